@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "beautymap/column_grid.h"
+#include "beautymap/config.h"
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+/// Ground of one column.
+struct GroundEstimate {
+  float height = Tile::kNoHeight;  ///< g_ij [m]
+  bool below_ground = false;       ///< the column's lowest point lies under l_min: an outlier
+};
+
+/// Coarse ground of one column (section "coarse ground"): its own lowest height, clamped to
+/// median(L) -/+ mad_factor MAD(L).
+/// @param lowest      lowest height of the column [m]
+/// @param neighbours  L, the lowest heights of the columns around it [m]; reordered here
+/// @param possible    how many columns the neighbourhood has, with points or not
+GroundEstimate coarseGroundOf(float lowest, std::vector<float>& neighbours, int possible,
+                              const CoarseGroundConfig& config);
+
+/// Coarse ground of every column that has points; a symmetric neighbourhood, so the order is
+/// irrelevant.
+void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config);
+
+}  // namespace beautymap

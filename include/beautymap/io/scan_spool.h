@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "beautymap/io/scan_source.h"
+
+namespace beautymap {
+
+/// A temporary file of scans, for a source that is slow to read (compressed bags, text files) and
+/// wanted several times. All scans have the fields of the first one. The file has no name: it is
+/// gone with the process, however that ends.
+class ScanSpool {
+ public:
+  /// @param folder  where the file is made; it needs the room of the uncompressed scans
+  /// @throws InputError when no file can be made there.
+  explicit ScanSpool(const std::string& folder);
+
+  /// Whether the scan has the fields of those before; append() takes only such ones.
+  bool accepts(const SourceScan& scan) const;
+  /// @throws InputError when the disk is full.
+  void append(const SourceScan& scan);
+  void rewind();
+  /// The next scan; false at the end. Buffers of the scan given are used again.
+  bool next(SourceScan& scan);
+  std::size_t size() const { return size_; }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  std::string folder_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  pcl::PCLPointCloud2 layout_;  ///< fields of the first scan, no points
+  std::size_t size_ = 0;
+  std::size_t read_ = 0;
+};
+
+}  // namespace beautymap

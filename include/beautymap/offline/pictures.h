@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+struct Color {
+  std::uint8_t r = 255, g = 255, b = 255;
+};
+
+/// An RGB image with the map's +x to the right and +y up.
+class Picture {
+ public:
+  Picture(int width, int height)
+      : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height) {}
+  int width() const { return width_; }
+  int height() const { return height_; }
+  Color& at(int x, int y_up) {
+    return pixels_[static_cast<std::size_t>(height_ - 1 - y_up) * width_ + x];
+  }
+  /// @throws InputError when the file cannot be written; it is written beside its target and
+  /// renamed.
+  void writePng(const std::string& path) const;
+
+ private:
+  int width_, height_;
+  std::vector<Color> pixels_;
+};
+
+/// Counts points per pixel of a top view, and draws them.
+class TopView {
+ public:
+  /// @param corner, extent  of the area that is shown, in the map frame [m]
+  TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent);
+
+  /// @param moving  the point's label, false where there are none
+  void add(const Eigen::Vector3d& point, bool removed, bool moving);
+
+  /// Static points blue, removed ones red on top of them.
+  Picture before() const;
+  /// What is left.
+  Picture after() const;
+  /// Against the labels: removed by mistake orange, missed ghosts magenta, the rest grey.
+  Picture mistakes() const;
+  double metresPerPixel() const { return metres_per_pixel_; }
+
+ private:
+  struct Pixel {
+    std::uint32_t kept = 0, removed = 0, removed_static = 0, kept_moving = 0;
+  };
+  template <typename F>
+  Picture draw(F color) const;
+
+  Eigen::Vector2d corner_;
+  double metres_per_pixel_;
+  double pixels_per_metre_;
+  int width_, height_;
+  std::vector<Pixel> pixels_;
+};
+
+/// The binary matrix as a heat map: the height of each column's highest occupied bit, purple to
+/// yellow; columns in which something was removed red.
+Picture drawMatrix(const TileMap& map);
+
+}  // namespace beautymap

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "beautymap/column_grid.h"
+#include "beautymap/config.h"
+
+namespace beautymap {
+
+/// A scan and where it was taken. Points may be NaN, zero or far away: placing the scan drops them.
+struct Scan {
+  pcl::PointCloud<pcl::PointXYZ> cloud;  ///< [m] in the cloud's frame
+  Eigen::Isometry3d T_map_cloud = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d sensor_in_map = Eigen::Vector3d::Zero();  ///< where the beams start [m]
+};
+
+/// How many points of the scans were dropped, and why.
+struct DroppedPoints {
+  std::uint64_t non_finite = 0;
+  std::uint64_t zero =
+      0;  ///< exactly at the cloud's or the sensor's origin: what drivers write for no return
+  std::uint64_t too_near = 0;
+  std::uint64_t too_far = 0;
+  std::uint64_t total() const { return non_finite + zero + too_near + too_far; }
+};
+
+/// A scan's usable points, relative to a map column near the sensor, so that float32 keeps its
+/// millimetres wherever in the world the map lies.
+struct PlacedScan {
+  ColumnIndex
+      anchor;  ///< its corner is the origin of x and y below; z counts from the map's z origin
+  Eigen::Vector3f sensor;                   ///< [m]
+  std::vector<Eigen::Vector3f> points;      ///< [m]
+  std::vector<std::uint32_t> source_index;  ///< of each point in the scan's cloud
+};
+
+/// The column that holds a position of the map frame [m].
+ColumnIndex columnOf(const Eigen::Vector3d& position_in_map, double res_g);
+
+/// Moves a scan into the map and drops unusable points.
+/// @param z_origin  height of the map frame [m] that becomes z = 0
+/// @param recycled  an earlier result whose memory is used again
+/// @throws std::invalid_argument when the pose is not finite or beyond the range of column indices.
+PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const ScanConfig& config,
+                     DroppedPoints& dropped, PlacedScan recycled = {});
+
+}  // namespace beautymap

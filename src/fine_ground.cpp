@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/fine_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace beautymap {
+
+int fineBinCount(const MatrixConfig& matrix, const FineGroundConfig& config) {
+  // The small amount keeps 0.2 / 0.1 from becoming 3.
+  return static_cast<int>(std::ceil(matrix.res_h / config.bin_height - 1e-6));
+}
+
+int fineBinOf(float height_in_cell, int bins, const FineGroundConfig& config) {
+  const float bin = height_in_cell / static_cast<float>(config.bin_height);
+  return static_cast<int>(std::clamp(bin, 0.0F, static_cast<float>(bins - 1)));
+}
+
+int groundBins(const std::uint32_t* counts, int bins, double ground_ratio) {
+  const double all = std::accumulate(counts, counts + bins, 0.0);
+  double from_below = 0.0;
+  for (int bin = 0; bin < bins; ++bin) {
+    from_below += counts[bin];
+    // Counts are whole numbers; the small amount keeps 0.55 * 100 from being more than 55.
+    if (from_below >= ground_ratio * all - 1e-6) return bin + 1;
+  }
+  return bins;
+}
+
+void segmentFineGround(TileMap& map, const FineGroundConfig& config) {
+  const int bins = map.fineBins();
+  map.forEachTile([&](ColumnIndex, Tile& tile) {
+    for (std::size_t i = 0; i < tile.occupied.size(); ++i) {
+      const Bits above_ground_cell = lowestBit(tile.occupied[i]) << 1;
+      if ((tile.dynamic[i] & above_ground_cell) == 0) continue;
+      const std::uint32_t* counts = tile.fine_counts.data() + i * static_cast<std::size_t>(bins);
+      tile.static_bins[i] =
+          static_cast<std::uint16_t>(groundBins(counts, bins, config.ground_ratio));
+    }
+  });
+}
+
+}  // namespace beautymap

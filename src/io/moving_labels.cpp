@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moving_labels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "beautymap/io/cloud_fields.h"
+
+namespace beautymap {
+namespace {
+
+std::uint32_t toLabel(double value) {
+  return value >= 0.0 && value <= 4294967295.0 ? static_cast<std::uint32_t>(value) : 0;
+}
+
+}  // namespace
+
+std::vector<bool> movingPoints(const pcl::PCLPointCloud2& cloud, const ScanSource& source) {
+  if (!FieldReader::has(cloud, "label")) return {};
+  const FieldReader label(cloud, "label");
+  std::vector<bool> moving(pointCount(cloud));
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = source.isMoving(toLabel(label(i)));
+  return moving;
+}
+
+void clearStaticLabels(pcl::PCLPointCloud2& cloud, const ScanSource& source) {
+  if (!FieldReader::has(cloud, "label")) return;
+  const FieldReader label(cloud, "label");
+  const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
+                                  [](const auto& candidate) { return candidate.name == "label"; });
+  const std::size_t bytes = fieldTypeSize(field->datatype);
+  for (std::size_t i = 0; i < pointCount(cloud); ++i) {
+    const std::uint32_t value = toLabel(label(i));
+    if (value == 0 || source.isMoving(value)) continue;
+    std::fill_n(cloud.data.data() + i * cloud.point_step + field->offset, bytes, std::uint8_t{0});
+  }
+}
+
+}  // namespace beautymap

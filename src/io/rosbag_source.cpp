@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rosbag_source.h"
+
+#include <nav_msgs/Odometry.h>
+#include <pcl_conversions/pcl_conversions.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "beautymap/io/cloud_fields.h"
+#include "scan_files.h"
+#include "text.h"
+
+namespace beautymap {
+namespace {
+
+const char* const kCloudType = "sensor_msgs/PointCloud2";
+const char* const kOdometryType = "nav_msgs/Odometry";
+
+using Topic = RosbagFiles::Topic;
+
+/// Record times.
+struct Window {
+  ros::Time begin = ros::TIME_MIN;
+  ros::Time end = ros::TIME_MAX;
+};
+
+Window chooseWindow(const RosbagFiles& files, const SourceOptions& options) {
+  const double length_s = (files.end() - files.begin()).toSec();
+  Window window;
+  if (options.start_s > 0.0) {
+    if (options.start_s > length_s) {
+      throw InputError("start is " + std::to_string(options.start_s) +
+                       " s, but the input is only " + std::to_string(length_s) + " s long");
+    }
+    window.begin = files.begin() + ros::Duration(options.start_s);
+  }
+  if (options.duration_s > 0.0 && options.start_s + options.duration_s < length_s) {
+    window.end = files.begin() + ros::Duration(options.start_s + options.duration_s);
+  }
+  return window;
+}
+
+/// Poses are recorded before and after the scans that need them. A little of a long recording must
+/// not take the time of reading it all.
+Window widened(Window window) {
+  const ros::Duration margin(30.0);
+  if (window.begin > ros::TIME_MIN + margin) window.begin -= margin;
+  if (window.end < ros::TIME_MAX - margin) window.end += margin;
+  return window;
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Topics are named with and without a leading slash.
+bool sameTopic(const std::string& a, const std::string& b) {
+  return stripSlash(a) == stripSlash(b);
+}
+
+RosbagFiles::Query messagesOf(const Topic& topic) {
+  return [topic](const rosbag::ConnectionInfo& connection) {
+    return connection.topic == topic.name && connection.datatype == topic.type;
+  };
+}
+
+/// The header.frame_id of a topic's first readable message.
+template <typename Message>
+std::string firstFrame(const RosbagFiles& files, const Topic& topic) {
+  const auto view = files.view(messagesOf(topic));
+  for (const auto& instance : *view) {
+    try {
+      const auto message = instance.instantiate<Message>();
+      if (message != nullptr) return stripSlash(message->header.frame_id);
+    } catch (const std::exception&) {
+      continue;
+    }
+  }
+  return "";
+}
+
+/// One line a topic of this type: name, type, frame, count.
+template <typename Message>
+std::string candidates(const RosbagFiles& files, const std::string& type) {
+  std::string lines;
+  for (const Topic& topic : files.topics()) {
+    if (topic.type != type) continue;
+    lines += "\n  " + topic.name + " (" + type + ", frame '" + firstFrame<Message>(files, topic) +
+             "', " + std::to_string(topic.messages) + " messages)";
+  }
+  return lines;
+}
+
+std::string allTopics(const RosbagFiles& files) {
+  std::vector<std::string> topics;
+  for (const Topic& topic : files.topics()) topics.push_back(topic.name + " (" + topic.type + ")");
+  return join(topics);
+}
+
+Topic chooseCloudTopic(const RosbagFiles& files, const std::string& wanted) {
+  std::vector<Topic> found;
+  for (const Topic& topic : files.topics()) {
+    if (topic.type == kCloudType && (wanted.empty() || sameTopic(topic.name, wanted))) {
+      found.push_back(topic);
+    }
+  }
+  if (found.size() == 1) return found.front();
+  const std::string list = candidates<sensor_msgs::PointCloud2>(files, kCloudType);
+  if (list.empty()) {
+    throw InputError(
+        files.paths().front() +
+        ": there are no sensor_msgs/PointCloud2 messages; topics: " + allTopics(files));
+  }
+  if (wanted.empty()) {
+    throw InputError("there are several topics with clouds: name one with --cloud-topic" + list);
+  }
+  throw InputError("there are no clouds on " + wanted + " (--cloud-topic); candidates:" + list);
+}
+
+Topic chooseOdometryTopic(const RosbagFiles& files, const std::string& wanted) {
+  for (const Topic& topic : files.topics()) {
+    if (topic.type == kOdometryType && sameTopic(topic.name, wanted)) return topic;
+  }
+  const std::string list = candidates<nav_msgs::Odometry>(files, kOdometryType);
+  throw InputError("there is no nav_msgs/Odometry on " + wanted + " (--odom-topic); " +
+                   (list.empty() ? "topics: " + allTopics(files) : "candidates:" + list));
+}
+
+/// Calls `use` with every readable message of a window of time.
+template <typename Message, typename Use>
+void forEach(const RosbagFiles& files, const RosbagFiles::Query& query, const Window& window,
+             const Use& use) {
+  const auto view = files.view(query, window.begin, window.end);
+  for (const auto& instance : *view) {
+    try {
+      const auto message = instance.instantiate<Message>();
+      if (message != nullptr) use(*message);
+    } catch (const std::exception&) {
+      continue;  // the scans that miss it are counted
+    }
+  }
+}
+
+RosbagFiles::Query transforms(bool is_static) {
+  return [is_static](const rosbag::ConnectionInfo& connection) {
+    // tf/tfMessage of old bags is the same message.
+    const bool is_type =
+        connection.datatype == "tf2_msgs/TFMessage" || connection.datatype == "tf/tfMessage";
+    return is_type && endsWith("/" + connection.topic, is_static ? "/tf_static" : "/tf");
+  };
+}
+
+TfHistory loadTf(const RosbagFiles& files, const Window& window) {
+  TfHistory tf;
+  for (const bool is_static : {true, false}) {
+    // Static transforms are recorded once, at the beginning.
+    forEach<tf2_msgs::TFMessage>(files, transforms(is_static), is_static ? Window() : window,
+                                 [&](const auto& message) {
+                                   for (const auto& transform : message.transforms) {
+                                     tf.insert(transform, is_static);
+                                   }
+                                 });
+  }
+  tf.finish();
+  return tf;
+}
+
+OdometryHistory loadOdometry(const RosbagFiles& files, const Topic& topic, const Window& window) {
+  OdometryHistory odometry;
+  forEach<nav_msgs::Odometry>(files, messagesOf(topic), window,
+                              [&](const auto& message) { odometry.insert(message); });
+  odometry.finish();
+  return odometry;
+}
+
+}  // namespace
+
+RosbagSource::RosbagSource(const std::vector<std::string>& paths, const SourceOptions& options)
+    : files_(paths),
+      topic_(chooseCloudTopic(files_, options.cloud_topic)),
+      stride_(static_cast<std::size_t>(std::max(1, options.stride))),
+      cloud_frame_(firstFrame<sensor_msgs::PointCloud2>(files_, topic_)),
+      poses_(loadPoses(options)) {
+  const Window window = chooseWindow(files_, options);
+  view_ = files_.view(messagesOf(topic_), window.begin, window.end);
+  at_ = view_->begin();
+  describeFirstScan();
+}
+
+std::unique_ptr<ScanPoses> RosbagSource::loadPoses(const SourceOptions& options) const {
+  const Window window = widened(chooseWindow(files_, options));
+  TfHistory tf = loadTf(files_, window);
+  if (!options.odom_topic.empty()) {
+    const Topic topic = chooseOdometryTopic(files_, options.odom_topic);
+    OdometryHistory odometry = loadOdometry(files_, topic, window);
+    if (odometry.size() == 0) {
+      throw InputError("none of the " + std::to_string(topic.messages) + " messages on " +
+                       topic.name + " holds a usable pose");
+    }
+    return posesFromOdometry(std::move(odometry), std::move(tf), options, cloud_frame_);
+  }
+  if (tf.empty()) {
+    const std::string list = candidates<nav_msgs::Odometry>(files_, kOdometryType);
+    throw InputError(
+        files_.paths().front() + ": there are no usable transforms on /tf or /tf_static" +
+        (tf.unusable() > 0 ? " (" + std::to_string(tf.unusable()) +
+                                 " unusable, the first: " + tf.unusableExample() + ")"
+                           : "") +
+        (list.empty() ? " and there is no odometry: the poses of the scans are unknown. Record /tf "
+                        "of a LiDAR odometry beside the clouds"
+                      : "; take the poses from odometry with --odom-topic" + list));
+  }
+  return posesFromTf(std::move(tf), options, cloud_frame_);
+}
+
+void RosbagSource::describeFirstScan() {
+  char length[64];
+  std::snprintf(length, sizeof(length), "%.1f s", (files_.end() - files_.begin()).toSec());
+  description_ = {"bags: " + join(files_.paths()) + " (" + length + ")"};
+  SourceScan scan;
+  bool found = false;
+  // Poses often begin some scans after the clouds; there is no need to search the whole recording.
+  constexpr std::size_t kTries = 20;
+  while (!found && at_ != view_->end() && position_ / stride_ < kTries) {
+    found = position_ % stride_ == 0 && read(*at_, scan);
+    ++at_;
+    ++position_;
+  }
+  description_.push_back("clouds: " + topic_.name + ", " + std::to_string(size()) +
+                         " scans, frame '" + cloud_frame_ + "'" +
+                         (found ? ", fields " + fieldNames(scan.cloud) : ""));
+  for (const std::string& line : poses_->describe()) description_.push_back(line);
+  if (found) description_.push_back("first pose: " + describePose(scan.T_map_sensor));
+  rewind();
+}
+
+bool RosbagSource::read(const rosbag::MessageInstance& message, SourceScan& scan) {
+  boost::shared_ptr<sensor_msgs::PointCloud2> cloud;
+  try {
+    cloud = message.instantiate<sensor_msgs::PointCloud2>();
+  } catch (const std::exception& error) {
+    skip("unreadable message", "recorded at " + inSeconds(message.getTime().toNSec()) + ": " +
+                                   error.what() + " (the bag may be damaged)");
+    return false;
+  }
+  if (cloud == nullptr) {
+    skip("unreadable message", "not the sensor_msgs/PointCloud2 that this program knows");
+    return false;
+  }
+  scan.stamp_ns = cloud->header.stamp.toNSec();
+  const std::string frame = stripSlash(cloud->header.frame_id);
+  const std::string which = "scan at " + inSeconds(scan.stamp_ns) + ": ";
+  if (scan.stamp_ns == 0) {
+    skip("stamp 0", "recorded at " + inSeconds(message.getTime().toNSec()) +
+                        ": header.stamp is 0, so its pose is unknown");
+    return false;
+  }
+  if (cloud->width == 0 || cloud->height == 0) {
+    skip("empty cloud", which + "no points");
+    return false;
+  }
+  pcl_conversions::moveToPCL(*cloud, scan.cloud);
+  if (const auto wrong = normalizeCloud(scan.cloud)) {
+    skip("malformed cloud", which + *wrong);
+    return false;
+  }
+  std::string reason;
+  if (poses_->find(frame, scan.stamp_ns, scan, reason)) return true;
+  const bool is_first = skipped_.count(reason) == 0;
+  skip(reason, is_first ? poses_->explain(frame, scan.stamp_ns) : "");
+  return false;
+}
+
+bool RosbagSource::next(SourceScan& scan) {
+  bool found = false;
+  while (!found && at_ != view_->end()) {
+    found = position_ % stride_ == 0 && read(*at_, scan);
+    ++at_;
+    ++position_;
+  }
+  return found;
+}
+
+void RosbagSource::rewind() {
+  at_ = view_->begin();
+  position_ = 0;
+  skipped_.clear();
+}
+
+std::size_t RosbagSource::size() const { return (view_->size() + stride_ - 1) / stride_; }
+
+}  // namespace beautymap

@@ -1,0 +1,305 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/offline/offline_cleaner.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <limits>
+#include <unordered_set>
+#include <utility>
+
+#include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/pcd_stream.h"
+#include "beautymap/io/scan_conversion.h"
+#include "beautymap/io/scan_spool.h"
+#include "beautymap/map_cleaner.h"
+#include "beautymap/offline/pictures.h"
+
+namespace beautymap {
+namespace {
+
+// float32 rounds to less than half a millimetre up to here.
+constexpr double kMaxFloat32Coordinate = 8192.0;
+
+/// A scan as the source gave it, and as the core takes it.
+struct ReadScan {
+  SourceScan source;
+  Scan scan;
+};
+
+/// Calls use(scan) for each scan that read(scan) delivers, while another thread reads the next one.
+template <typename Read, typename Use>
+void readAhead(Read read, Use use) {
+  ReadScan current, next;
+  bool more = read(current);
+  while (more) {
+    auto reading = std::async(std::launch::async, [&] { return read(next); });
+    use(current);
+    more = reading.get();
+    std::swap(current, next);
+  }
+}
+
+/// The smallest box around all scans' points, horizontally, and their largest coordinate [m].
+struct Extent {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  double largest = 0.0;
+};
+
+Extent extentOf(const MapCleaner& cleaner) {
+  Extent extent;
+  const double side = cleaner.config().matrix.res_g * Tile::kSide;
+  cleaner.map().forEachTile([&](ColumnIndex index, const Tile&) {
+    const Eigen::Vector2d corner = Eigen::Vector2d(index.x, index.y) * side;
+    extent.low = extent.low.cwiseMin(corner);
+    extent.high = extent.high.cwiseMax(corner + Eigen::Vector2d::Constant(side));
+  });
+  extent.largest = std::max({extent.low.cwiseAbs().maxCoeff(), extent.high.cwiseAbs().maxCoeff(),
+                             std::abs(cleaner.zOrigin()) + cleaner.config().scan.max_range});
+  return extent;
+}
+
+/// A label field may be of any type; values that no label has count as 0.
+std::uint32_t labelOf(double value) {
+  return value > 0.0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
+}
+
+/// One of the two point files.
+class PointFile {
+ public:
+  PointFile(std::string path, double voxel_m) : path_(std::move(path)), voxel_m_(voxel_m) {}
+
+  /// @return false when the point's voxel has one already.
+  bool append(const pcl::PCLPointCloud2& cloud, std::size_t point,
+              const Eigen::Vector3d& position) {
+    if (!writer_) writer_ = std::make_unique<PcdStreamWriter>(path_, cloud);
+    if (voxel_m_ > 0.0 && !voxels_.insert(voxelKey(position)).second) return false;
+    writer_->append(cloud.data.data() + point * cloud.point_step);
+    return true;
+  }
+  void close(const pcl::PCLPointCloud2& layout) {
+    if (!writer_) writer_ = std::make_unique<PcdStreamWriter>(path_, layout);
+    writer_->close();
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::uint64_t voxelKey(const Eigen::Vector3d& position) const {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
+    const auto axis = [&](double value) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m_))) &
+             kMask;
+    };
+    return axis(position.x()) << 42 | axis(position.y()) << 21 | axis(position.z());
+  }
+
+  std::string path_;
+  double voxel_m_;
+  std::unique_ptr<PcdStreamWriter> writer_;
+  std::unordered_set<std::uint64_t> voxels_;
+};
+
+/// The passes over the scans, in their order.
+class OfflineRun {
+ public:
+  OfflineRun(ScanSource& source, const Config& config, const OfflineOptions& options,
+             const ProgressListener& progress)
+      : source_(source),
+        options_(options),
+        progress_(progress),
+        cleaner_(config),
+        spool_(options.output),
+        evaluator_(options.score_radius_m) {}
+
+  OfflineReport run() {
+    const auto start = std::chrono::steady_clock::now();
+    observe();
+    cleaner_.estimateGround();
+    passOverSpool("encoding", [&](const ReadScan& s) { cleaner_.encode(s.scan); });
+    passOverSpool("comparing", [&](const ReadScan& s) { cleaner_.compare(s.scan); });
+    cleaner_.segmentGround();
+    write();
+    for (const auto& stage : cleaner_.times().stages())
+      report_.stages.add(stage.first, stage.second);
+    report_.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    report_.peak_memory_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    return report_;
+  }
+
+ private:
+  void observe();
+  template <typename Use>
+  void passOverSpool(const std::string& name, Use use);
+  void write();
+  void writeScan(const ReadScan& read);
+  void scoreAgainst(const std::string& cleaned);
+  void writePictures() const;
+
+  ScanSource& source_;
+  const OfflineOptions& options_;
+  const ProgressListener& progress_;
+  MapCleaner cleaner_;
+  ScanSpool spool_;
+  Evaluator evaluator_;
+  OfflineReport report_;
+  bool labelled_ = true;  ///< until a scan without labels comes
+  std::unique_ptr<PointFile> cleaned_, dynamic_;
+  std::unique_ptr<TopView> top_view_;
+  pcl::PCLPointCloud2 output_layout_;
+};
+
+void OfflineRun::observe() {
+  progress_.begin("reading", source_.size());
+  const auto skip = [&](const std::string& reason, const std::string& example) {
+    Skipped& skipped = report_.skipped_scans[reason];
+    if (skipped.count++ == 0) skipped.example = example;
+  };
+  readAhead(
+      [&](ReadScan& read) {
+        if (!source_.next(read.source)) return false;
+        convertScan(read.source, read.scan);
+        return true;
+      },
+      [&](const ReadScan& read) {
+        progress_.step();
+        if (!spool_.accepts(read.source)) {
+          skip("fields differ from the first scan's", "scan " + std::to_string(report_.scans));
+          return;
+        }
+        try {
+          cleaner_.observe(read.scan);
+        } catch (const std::invalid_argument& e) {
+          skip("unusable pose", e.what());
+          return;
+        }
+        StageClock clock(report_.stages);
+        spool_.append(read.source);
+        clock.lap("spool");
+        ++report_.scans;
+        report_.points += read.scan.cloud.size();
+        labelled_ = labelled_ && FieldReader::has(read.source.cloud, "label");
+      });
+  for (const auto& skipped : source_.skipped()) report_.skipped_scans.insert(skipped);
+  report_.dropped_points = cleaner_.dropped();
+  if (report_.scans > 0) return;
+  std::string reasons;
+  for (const auto& s : report_.skipped_scans) {
+    reasons += "\n  " + std::to_string(s.second.count) + " x " + s.first + ": " + s.second.example;
+  }
+  throw InputError("no scan can be used" + (reasons.empty() ? ": the input is empty" : reasons));
+}
+
+template <typename Use>
+void OfflineRun::passOverSpool(const std::string& name, Use use) {
+  progress_.begin(name, spool_.size());
+  spool_.rewind();
+  readAhead(
+      [&](ReadScan& read) {
+        if (!spool_.next(read.source)) return false;
+        convertScan(read.source, read.scan);
+        return true;
+      },
+      [&](const ReadScan& read) {
+        use(read);
+        progress_.step();
+      });
+}
+
+void OfflineRun::write() {
+  const Extent extent = extentOf(cleaner_);
+  report_.float64_coordinates = extent.largest > kMaxFloat32Coordinate;
+  report_.tiles = cleaner_.map().tileCount();
+  report_.matrix_memory_mb = static_cast<double>(cleaner_.map().memoryBytes()) / 1048576.0;
+  top_view_ = std::make_unique<TopView>(extent.low, extent.high - extent.low);
+  cleaned_ = std::make_unique<PointFile>(options_.output + "/cleaned.pcd", options_.voxel_m);
+  dynamic_ = std::make_unique<PointFile>(options_.output + "/dynamic.pcd", options_.voxel_m);
+  passOverSpool("writing", [&](const ReadScan& read) { writeScan(read); });
+  cleaned_->close(output_layout_);
+  dynamic_->close(output_layout_);
+  StageClock clock(report_.stages);
+  if (labelled_) scoreAgainst(cleaned_->path());
+  clock.lap("score");
+  writePictures();
+  clock.lap("pictures");
+}
+
+void OfflineRun::writeScan(const ReadScan& read) {
+  const std::vector<PointClass> classes = cleaner_.classify(read.scan);
+  StageClock clock(report_.stages);
+  const pcl::PCLPointCloud2 cloud =
+      moveCloud(read.source.cloud, read.source.T_map_cloud, report_.float64_coordinates);
+  output_layout_.fields = cloud.fields;
+  output_layout_.point_step = cloud.point_step;
+  const PositionReader position_of(cloud);
+  const FieldReader label(cloud, labelled_ ? "label" : "x");
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const bool removed = classes[i] == PointClass::kDynamic;
+    const bool moving = labelled_ && source_.isMoving(labelOf(label(i)));
+    const Eigen::Vector3d position = position_of(i);
+    bool kept = false;
+    if (classes[i] != PointClass::kDropped) {
+      const bool written = (removed ? dynamic_ : cleaned_)->append(cloud, i, position);
+      kept = written && !removed;
+      ++(removed ? report_.dynamic_points : report_.static_points);
+      top_view_->add(position, removed, moving);
+    }
+    if (!labelled_) continue;
+    if (kept) {
+      evaluator_.addKept(moving);
+    } else {
+      evaluator_.addUnmatched(position, moving);
+    }
+  }
+  clock.lap("write");
+}
+
+void OfflineRun::scoreAgainst(const std::string& cleaned) {
+  readPcdBlocks(cleaned, [&](const pcl::PCLPointCloud2& block) {
+    const PositionReader position(block);
+    for (std::size_t i = 0; i < block.width; ++i) evaluator_.showCleaned(position(i));
+  });
+  report_.score = evaluator_.score();
+}
+
+void OfflineRun::writePictures() const {
+  top_view_->before().writePng(options_.output + "/before.png");
+  top_view_->after().writePng(options_.output + "/after.png");
+  if (labelled_) top_view_->mistakes().writePng(options_.output + "/mistakes.png");
+  drawMatrix(cleaner_.map()).writePng(options_.output + "/matrix.png");
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".tmp";
+  {
+    std::ofstream file(temporary);
+    file << text;
+    if (!file.flush()) throw InputError("cannot write '" + path + "'");
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+}  // namespace
+
+OfflineReport cleanOffline(ScanSource& source, const Config& config, const OfflineOptions& options,
+                           const ProgressListener& progress) {
+  std::error_code error;
+  std::filesystem::create_directories(options.output, error);
+  if (error) {
+    throw InputError("cannot make the folder '" + options.output + "': " + error.message());
+  }
+  OfflineReport report = OfflineRun(source, config, options, progress).run();
+  writeText(options.output + "/report.json", toJson(report, config));
+  return report;
+}
+
+}  // namespace beautymap

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/offline/pictures.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "beautymap/io/scan_source.h"
+
+namespace beautymap {
+namespace {
+
+constexpr int kMaxSide = 1600;        // [pixels]
+constexpr double kFinestPixel = 0.1;  // [m]
+constexpr Color kRemoved{214, 39, 40};
+constexpr Color kWronglyRemoved{255, 127, 14};
+constexpr Color kMissed{227, 26, 200};
+
+/// Darker with more points, on a logarithmic scale.
+Color shade(std::uint32_t count, Color dark) {
+  if (count == 0) return {};
+  const double share = std::min(1.0, 0.35 + 0.13 * std::log2(static_cast<double>(count)));
+  const auto mix = [share](std::uint8_t channel) {
+    return static_cast<std::uint8_t>(255.0 - share * (255.0 - channel));
+  };
+  return {mix(dark.r), mix(dark.g), mix(dark.b)};
+}
+
+/// Purple over green to yellow, close to matplotlib's viridis.
+Color heat(double share) {
+  constexpr double kStops[5][3] = {
+      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+  const double position = std::clamp(share, 0.0, 1.0) * 4.0;
+  const int stop = std::min(3, static_cast<int>(position));
+  const double rest = position - stop;
+  const auto channel = [&](int c) {
+    return static_cast<std::uint8_t>(kStops[stop][c] +
+                                     rest * (kStops[stop + 1][c] - kStops[stop][c]));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
+}  // namespace
+
+void Picture::writePng(const std::string& path) const {
+  static_assert(sizeof(Color) == 3, "rows are handed to libpng as they are");
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width_);
+  image.height = static_cast<png_uint_32>(height_);
+  image.format = PNG_FORMAT_RGB;
+  const std::string temporary = path + ".tmp";
+  if (!png_image_write_to_file(&image, temporary.c_str(), 0, pixels_.data(), 0, nullptr) ||
+      std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw InputError("cannot write '" + path + "': " + image.message);
+  }
+}
+
+TopView::TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent)
+    : corner_(corner),
+      metres_per_pixel_(std::max(kFinestPixel, extent.maxCoeff() / kMaxSide)),
+      pixels_per_metre_(1.0 / metres_per_pixel_),
+      width_(std::max(1, static_cast<int>(std::ceil(extent.x() / metres_per_pixel_)))),
+      height_(std::max(1, static_cast<int>(std::ceil(extent.y() / metres_per_pixel_)))),
+      pixels_(static_cast<std::size_t>(width_) * height_) {}
+
+void TopView::add(const Eigen::Vector3d& point, bool removed, bool moving) {
+  const Eigen::Vector2d position = (point.head<2>() - corner_) * pixels_per_metre_;
+  if (!(position.minCoeff() >= 0.0 && position.x() < width_ && position.y() < height_)) return;
+  const int x = static_cast<int>(position.x());
+  const int y = static_cast<int>(position.y());
+  Pixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
+  ++(removed ? pixel.removed : pixel.kept);
+  if (removed && !moving) ++pixel.removed_static;
+  if (!removed && moving) ++pixel.kept_moving;
+}
+
+template <typename F>
+Picture TopView::draw(F color) const {
+  Picture picture(width_, height_);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      picture.at(x, y) = color(pixels_[static_cast<std::size_t>(y) * width_ + x]);
+    }
+  }
+  return picture;
+}
+
+Picture TopView::before() const {
+  return draw([](const Pixel& p) {
+    return p.removed > 0 ? kRemoved : shade(p.kept, {8, 48, 140});
+  });
+}
+
+Picture TopView::after() const {
+  return draw([](const Pixel& p) { return shade(p.kept, {8, 48, 140}); });
+}
+
+Picture TopView::mistakes() const {
+  return draw([](const Pixel& p) {
+    if (p.kept_moving > 0) return kMissed;
+    if (p.removed_static > 0) return kWronglyRemoved;
+    return shade(p.kept, {150, 150, 150});
+  });
+}
+
+Picture drawMatrix(const TileMap& map) {
+  ColumnIndex low{INT32_MAX, INT32_MAX}, high{INT32_MIN, INT32_MIN};
+  int highest = 1;
+  map.forEachTile([&](ColumnIndex index, const Tile& tile) {
+    low = {std::min(low.x, index.x), std::min(low.y, index.y)};
+    high = {std::max(high.x, index.x), std::max(high.y, index.y)};
+    for (const Bits column : tile.occupied) {
+      if (column != 0) highest = std::max(highest, highestBitIndex(column));
+    }
+  });
+  if (map.tileCount() == 0) return Picture(1, 1);
+  const int tiles = std::max(high.x - low.x, high.y - low.y) + 1;
+  // Far apart maps shrink: one pixel then stands for several columns.
+  const int step = 1 + tiles * Tile::kSide / (2 * kMaxSide);
+  Picture picture((high.x - low.x + 1) * Tile::kSide / step + 1,
+                  (high.y - low.y + 1) * Tile::kSide / step + 1);
+  map.forEachTile([&](ColumnIndex index, const Tile& tile) {
+    for (int i = 0; i < Tile::kColumns; ++i) {
+      const Bits column = tile.occupied[static_cast<std::size_t>(i)];
+      if (column == 0) continue;
+      const int x = ((index.x - low.x) * Tile::kSide + (i >> Tile::kShift)) / step;
+      const int y = ((index.y - low.y) * Tile::kSide + (i & (Tile::kSide - 1))) / step;
+      picture.at(x, y) = tile.dynamic[static_cast<std::size_t>(i)] != 0
+                             ? kRemoved
+                             : heat(static_cast<double>(highestBitIndex(column)) / highest);
+    }
+  });
+  return picture;
+}
+
+}  // namespace beautymap

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/coarse_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/test_scenes.h"
+
+namespace beautymap {
+namespace {
+
+using test::Random;
+
+using Heights = std::map<std::pair<int, int>, double>;
+
+double medianBySorting(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2.0;
+}
+
+struct Ground {
+  double height;
+  bool below_ground;
+};
+
+/// MAD(L) = median(|l - median(L)|), [l_min, l_max] = median(L) -/+ factor MAD(L), g = min(max(l,
+/// l_min), l_max).
+Ground groundBySorting(double lowest, const std::vector<double>& neighbours, int possible,
+                       const CoarseGroundConfig& config) {
+  if (neighbours.empty()) return {lowest, false};
+  if (static_cast<double>(neighbours.size()) / possible < config.min_share) return {lowest, false};
+  const double median = medianBySorting(neighbours);
+  std::vector<double> deviations;
+  for (const double l : neighbours) deviations.push_back(std::abs(l - median));
+  const double mad = medianBySorting(deviations);
+  const double l_min = median - config.mad_factor * mad;
+  const double l_max = median + config.mad_factor * mad;
+  return {std::min(std::max(lowest, l_min), l_max), lowest < l_min};
+}
+
+CoarseGroundConfig randomConfig(Random& random) {
+  CoarseGroundConfig config;
+  config.radius = random.integer(1, 4);
+  // Exact in float and double, like the heights: nothing has to be tolerated.
+  config.min_share = random.pick<double>({0.0, 0.25, 0.5, 0.625, 1.0});
+  config.mad_factor = random.pick<double>({0.0, 0.5, 1.0, 3.0, 20.0});
+  return config;
+}
+
+TileMap mapOf(const Heights& lowest) {
+  TileMap map(1);
+  for (const auto& column : lowest) {
+    const ColumnIndex index{column.first.first, column.first.second};
+    map.tileAt(TileMap::tileOf(index))
+        .lowest[static_cast<std::size_t>(TileMap::indexInTile(index))] =
+        static_cast<float>(column.second);
+  }
+  return map;
+}
+
+GroundEstimate groundAt(const TileMap& map, int x, int y) {
+  const Tile* tile = map.findTile(TileMap::tileOf({x, y}));
+  if (!tile) return {};
+  const auto column = static_cast<std::size_t>(TileMap::indexInTile({x, y}));
+  return {tile->ground[column], tile->below_ground[column] != 0};
+}
+
+Heights randomHeights(Random& random, int extent, double share) {
+  Heights lowest;
+  for (int x = -extent; x <= extent; ++x) {
+    for (int y = -extent; y <= extent; ++y) {
+      if (!random.chance(share)) continue;
+      const double slope = 0.0625 * x;
+      const double outlier = random.chance(0.1) ? random.uniform(-5.0, 5.0) : 0.0;
+      lowest[{x, y}] = test::dyadic(slope + outlier + random.uniform(-0.1, 0.1));
+    }
+  }
+  return lowest;
+}
+
+TEST(CoarseGround, OneColumnAgreesWithSorting) {
+  for (std::uint32_t seed = 0; seed < 2000; ++seed) {
+    Random random(seed);
+    const CoarseGroundConfig config = randomConfig(random);
+    const int possible = (2 * config.radius + 1) * (2 * config.radius + 1) - 1;
+    std::vector<double> heights;
+    std::vector<float> neighbours;
+    for (int i = random.integer(0, possible); i > 0; --i) {
+      heights.push_back(test::dyadic(random.uniform(-4.0, 4.0)));
+      neighbours.push_back(static_cast<float>(heights.back()));
+    }
+    const double lowest = test::dyadic(random.uniform(-8.0, 8.0));
+    const Ground expected = groundBySorting(lowest, heights, possible, config);
+    const GroundEstimate ground =
+        coarseGroundOf(static_cast<float>(lowest), neighbours, possible, config);
+    ASSERT_EQ(ground.height, static_cast<float>(expected.height)) << "seed " << seed;
+    ASSERT_EQ(ground.below_ground, expected.below_ground) << "seed " << seed;
+  }
+}
+
+TEST(CoarseGround, EveryColumnOfAMapAgreesWithSortingItsNeighbours) {
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    Random random(seed);
+    const CoarseGroundConfig config = randomConfig(random);
+    const int extent = 40;  // four tiles, negative columns, and borders
+    const Heights lowest = randomHeights(random, extent, random.uniform(0.2, 1.0));
+    TileMap map = mapOf(lowest);
+    estimateCoarseGround(map, config);
+    const int r = config.radius;
+    const int possible = (2 * r + 1) * (2 * r + 1) - 1;
+    for (const auto& column : lowest) {
+      std::vector<double> neighbours;
+      for (int dx = -r; dx <= r; ++dx) {
+        for (int dy = -r; dy <= r; ++dy) {
+          const auto found = lowest.find({column.first.first + dx, column.first.second + dy});
+          if ((dx != 0 || dy != 0) && found != lowest.end()) neighbours.push_back(found->second);
+        }
+      }
+      const Ground expected = groundBySorting(column.second, neighbours, possible, config);
+      const GroundEstimate ground = groundAt(map, column.first.first, column.first.second);
+      ASSERT_EQ(ground.height, static_cast<float>(expected.height)) << "seed " << seed;
+      ASSERT_EQ(ground.below_ground, expected.below_ground) << "seed " << seed;
+    }
+  }
+}
+
+TEST(CoarseGround, ColumnsWithoutPointsHaveNoGround) {
+  Random random(1);
+  const Heights lowest = randomHeights(random, 20, 0.5);
+  for (const bool enabled : {true, false}) {
+    CoarseGroundConfig config;
+    config.enabled = enabled;
+    TileMap map = mapOf(lowest);
+    estimateCoarseGround(map, config);
+    for (int x = -32; x < 32; ++x) {
+      for (int y = -32; y < 32; ++y) {
+        EXPECT_EQ(groundAt(map, x, y).height == Tile::kNoHeight, lowest.count({x, y}) == 0);
+      }
+    }
+  }
+}
+
+TEST(CoarseGround, AMirroredMapHasAMirroredGround) {
+  Random random(5);
+  const Heights lowest = randomHeights(random, 36, 0.7);
+  Heights mirrored, turned;
+  for (const auto& column : lowest) {
+    mirrored[{-column.first.first, column.first.second}] = column.second;
+    turned[{column.first.second, column.first.first}] = column.second;
+  }
+  const CoarseGroundConfig config;
+  TileMap map = mapOf(lowest), mirrored_map = mapOf(mirrored), turned_map = mapOf(turned);
+  estimateCoarseGround(map, config);
+  estimateCoarseGround(mirrored_map, config);
+  estimateCoarseGround(turned_map, config);
+  for (const auto& column : lowest) {
+    const int x = column.first.first, y = column.first.second;
+    EXPECT_EQ(groundAt(map, x, y).height, groundAt(mirrored_map, -x, y).height);
+    EXPECT_EQ(groundAt(map, x, y).height, groundAt(turned_map, y, x).height);
+  }
+}
+
+/// Heights that alternate between 0 and 0.125: median 0 or 0.125, MAD at most 0.125.
+Heights roughGround() {
+  Heights lowest;
+  for (int x = -5; x <= 5; ++x) {
+    for (int y = -5; y <= 5; ++y) lowest[{x, y}] = (x + y) % 2 == 0 ? 0.0 : 0.125;
+  }
+  return lowest;
+}
+
+TEST(CoarseGround, AMultiPathReturnDoesNotPullTheGroundDown) {
+  Heights lowest = roughGround();
+  lowest[{0, 0}] = -3.0;
+  TileMap map = mapOf(lowest);
+  estimateCoarseGround(map, CoarseGroundConfig());
+  EXPECT_GE(groundAt(map, 0, 0).height, -3.0F * 0.125F);
+  EXPECT_TRUE(groundAt(map, 0, 0).below_ground);
+  EXPECT_FALSE(groundAt(map, 1, 0).below_ground);
+}
+
+TEST(CoarseGround, ACarRoofDoesNotLiftTheGround) {
+  Heights lowest = roughGround();
+  lowest[{0, 0}] = 1.5;  // the ground below was never seen
+  TileMap map = mapOf(lowest);
+  estimateCoarseGround(map, CoarseGroundConfig());
+  EXPECT_LE(groundAt(map, 0, 0).height, 0.125F + 3.0F * 0.125F);
+  EXPECT_FALSE(groundAt(map, 0, 0).below_ground);
+}
+
+TEST(CoarseGround, ALonelyColumnKeepsItsOwnLowestPoint) {
+  TileMap map = mapOf({{{-7, 3}, 2.5}, {{-6, 3}, -1.0}});
+  estimateCoarseGround(map, CoarseGroundConfig());
+  EXPECT_EQ(groundAt(map, -7, 3).height, 2.5F);
+  EXPECT_EQ(groundAt(map, -6, 3).height, -1.0F);
+  EXPECT_FALSE(groundAt(map, -6, 3).below_ground);
+}
+
+TEST(CoarseGround, SwitchedOffEveryColumnStartsAtTheLowestPointOfTheMap) {
+  Random random(9);
+  const Heights lowest = randomHeights(random, 40, 0.5);
+  double minimum = 1e9;
+  for (const auto& column : lowest) minimum = std::min(minimum, column.second);
+  CoarseGroundConfig config;
+  config.enabled = false;
+  TileMap map = mapOf(lowest);
+  estimateCoarseGround(map, config);
+  for (const auto& column : lowest) {
+    const GroundEstimate ground = groundAt(map, column.first.first, column.first.second);
+    EXPECT_EQ(ground.height, static_cast<float>(minimum));
+    EXPECT_FALSE(ground.below_ground);
+  }
+}
+
+TEST(CoarseGround, AnEmptyMapStaysEmpty) {
+  for (const bool enabled : {true, false}) {
+    CoarseGroundConfig config;
+    config.enabled = enabled;
+    TileMap map(1);
+    estimateCoarseGround(map, config);
+    EXPECT_EQ(map.tileCount(), 0U);
+  }
+}
+
+}  // namespace
+}  // namespace beautymap
