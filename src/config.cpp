@@ -199,6 +199,10 @@ void checkConfig(const Config& config) {
     throw ConfigError("matrix.roi_size = " + text(config.matrix.roi_size) + " must be at most " +
                       text(kMaxColumns) + " cells of matrix.res_g = " + text(config.matrix.res_g));
   }
+  if (config.matrix.bits_below >= config.matrix.n_bit) {
+    throw ConfigError("matrix.bits_below = " + text(config.matrix.bits_below) +
+                      " must be less than matrix.n_bit = " + text(config.matrix.n_bit));
+  }
   if (config.fine_ground.bin_height > config.matrix.res_h) {
     throw ConfigError("fine_ground.bin_height = " + text(config.fine_ground.bin_height) +
                       " must not exceed matrix.res_h = " + text(config.matrix.res_h));

@@ -29,11 +29,12 @@ int groundBins(const std::uint32_t* counts, int bins, double ground_ratio) {
   return bins;
 }
 
-void segmentFineGround(TileMap& map, const FineGroundConfig& config) {
+void segmentFineGround(TileMap& map, const FineGroundConfig& config, int ground_bit) {
   const int bins = map.fineBins();
   map.forEachTile([&](ColumnIndex, Tile& tile) {
     for (std::size_t i = 0; i < tile.occupied.size(); ++i) {
-      const Bits above_ground_cell = lowestBit(tile.occupied[i]) << 1;
+      const Bits ground_cell = ground_bit < 0 ? lowestBit(tile.occupied[i]) : Bits{1} << ground_bit;
+      const Bits above_ground_cell = ground_cell << 1;
       if ((tile.dynamic[i] & above_ground_cell) == 0) continue;
       const std::uint32_t* counts = tile.fine_counts.data() + i * static_cast<std::size_t>(bins);
       tile.static_bins[i] =

@@ -20,8 +20,6 @@ std::size_t sampleOf(std::size_t n, std::size_t stretch) {
   return n * stretch + static_cast<std::size_t>(scattered >> 33) % stretch;
 }
 
-constexpr Bits kGroundBit = 1;
-
 }  // namespace
 
 float steepestSlope(const PlacedScan& scan, double share) {
@@ -43,6 +41,8 @@ float steepestSlope(const PlacedScan& scan, double share) {
 BitGrid cellsInSight(const PlacedScan& scan, const BitGrid& scan_bits, const MapWindow& map,
                      const MatrixConfig& matrix, const RestorationConfig& config) {
   const float slope = steepestSlope(scan, config.steepest_share);
+  const Bits ground_bit = Bits{1} << matrix.bits_below;
+  const Bits above = ~lowBits(matrix.bits_below + 1);
   BitGrid in_sight(scan_bits.window(), 0);
   if (!std::isfinite(slope)) return in_sight;
   const float res_g = static_cast<float>(matrix.res_g);
@@ -59,8 +59,8 @@ BitGrid cellsInSight(const PlacedScan& scan, const BitGrid& scan_bits, const Map
       const float distance = std::hypot(dx, dy);
       if (distance < static_cast<float>(config.blind_radius)) continue;
       const Bits hits = scan_bits.at(x, y);
-      if ((hits & kGroundBit) == 0 && distance > static_cast<float>(config.sight_range)) continue;
-      const Bits above_ground = hits & ~kGroundBit;
+      if ((hits & ground_bit) == 0 && distance > static_cast<float>(config.sight_range)) continue;
+      const Bits above_ground = hits & above;
       if (above_ground != 0 && map.below_ground.at(x, y) == 0) {
         in_sight.at(x, y) = lowBits(highestBitIndex(above_ground));
         continue;

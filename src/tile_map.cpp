@@ -24,7 +24,11 @@ void TileMap::merge(const BitGrid& grid, std::array<Bits, Tile::kColumns> Tile::
 std::size_t TileMap::memoryBytes() const {
   const std::size_t fine =
       sizeof(std::uint32_t) * Tile::kColumns * static_cast<std::size_t>(fine_bins_);
-  return tiles_.size() * (sizeof(Tile) + fine);
+  std::size_t evidence = 0;
+  for (const auto& tile : tiles_) {
+    evidence += tile.second->evidence.size() * sizeof(ColumnEvidence);
+  }
+  return tiles_.size() * (sizeof(Tile) + fine) + evidence;
 }
 
 }  // namespace beautymap

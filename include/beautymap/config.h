@@ -30,9 +30,10 @@ struct ScanConfig {
 
 struct MatrixConfig {
   double res_g = 0.5;
-  double res_h = 0.25;
+  double res_h = 0.2;
   int n_bit = 64;
-  double roi_size = 40.0;
+  int bits_below = 8;
+  double roi_size = 160.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -40,6 +41,8 @@ struct MatrixConfig {
     v("res_h", res_h, 0.02, 5.0, "m", "height of one bit of a column");
     v("n_bit", n_bit, 2, 64, "bits",
       "bits of a column; whatever is higher than n_bit * res_h above ground counts as the top bit");
+    v("bits_below", bits_below, 0, 32, "bits",
+      "bits of a column that lie below its coarse ground, so that a lower level is judged, too");
     v("roi_size", roi_size, 1.0, 400.0, "m",
       "side of the square around the sensor in which a scan is compared with the map");
   }
@@ -99,6 +102,89 @@ struct FineGroundConfig {
   }
 };
 
+struct GroundLayerConfig {
+  bool enabled = true;
+  double bin_height = 0.05;
+  double search_height = 0.4;
+  double max_thickness = 0.2;
+  double tail_share = 0.1;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("enabled", enabled, false, true, "",
+      "keep a column's ground surface, found as the peak of its points' heights (only with "
+      "evidence); off: fine_ground divides the ground cell");
+    v("bin_height", bin_height, 0.01, 0.5, "m", "height of a bin of the histogram");
+    v("search_height", search_height, 0.05, 2.0, "m",
+      "the peak lies at most that far above the coarse ground");
+    v("max_thickness", max_thickness, 0.01, 1.0, "m", "the layer ends at most that far above it");
+    v("tail_share", tail_share, 0.0, 1.0, "",
+      "the layer ends where a bin has less than this share of the peak's points");
+  }
+};
+
+struct VisibilityConfig {
+  double max_range = 80.0;
+  double blind_radius = 1.0;
+  double pixel_deg = 0.2;
+  int min_beams = 2;
+  double min_share = 0.8;
+  double margin = 0.3;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("max_range", max_range, 1.0, 200.0, "m", "columns farther from the sensor are not judged");
+    v("blind_radius", blind_radius, 0.0, 20.0, "m", "columns nearer to the sensor are not judged");
+    v("pixel_deg", pixel_deg, 0.05, 2.0, "deg", "resolution of the beam image");
+    v("min_beams", min_beams, 1, 100, "beams",
+      "beams that must have passed through a cell's angular footprint for it to be seen free");
+    v("min_share", min_share, 0.5, 1.0, "",
+      "share of the beams in the footprint that must have passed");
+    v("margin", margin, 0.0, 5.0, "m", "a beam passed when it ended that far behind the cell");
+  }
+};
+
+struct EvidenceConfig {
+  bool enabled = true;
+  int min_free = 2;
+  double free_ratio = 0.5;
+  int min_free_in_order = 5;
+  double order_ratio = 0.08;
+  double strong_ratio = 2.0;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("enabled", enabled, false, true, "",
+      "count over all scans how often each cell was hit and seen free; off: what one scan finds "
+      "dynamic is removed, as published");
+    v("min_free", min_free, 1, 255, "scans", "a dynamic cell was seen free in at least as many");
+    v("free_ratio", free_ratio, 0.0, 100.0, "", "and in more than this times its hits");
+    v("min_free_in_order", min_free_in_order, 1, 255, "scans",
+      "or it was seen free in as many before its first or after its last hit");
+    v("order_ratio", order_ratio, 0.0, 100.0, "", "and there in more than this times its hits");
+    v("strong_ratio", strong_ratio, 0.0, 100.0, "",
+      "evidence is strong when a cell was seen free in more than this times its hits");
+  }
+};
+
+struct AgreementConfig {
+  bool enabled = true;
+  double min_share = 0.6;
+  double min_share_strong = 0.2;
+  int min_run = 3;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("enabled", enabled, false, true, "",
+      "keep dynamic cells that their neighbours do not support (only with evidence)");
+    v("min_share", min_share, 0.0, 1.0, "",
+      "share of a cell's occupied neighbours that must be dynamic, too");
+    v("min_share_strong", min_share_strong, 0.0, 1.0, "", "the same where the evidence is strong");
+    v("min_run", min_run, 1, 16, "bits",
+      "height of dynamic cells above each other, in the columns around, that a moving object has");
+  }
+};
+
 /// Everything that decides what is removed. Defaults here equal config/default.yaml.
 struct Config {
   ScanConfig scan;
@@ -106,6 +192,10 @@ struct Config {
   CoarseGroundConfig coarse_ground;
   RestorationConfig restoration;
   FineGroundConfig fine_ground;
+  GroundLayerConfig ground_layer;
+  VisibilityConfig visibility;
+  EvidenceConfig evidence;
+  AgreementConfig agreement;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -114,6 +204,10 @@ struct Config {
     v.group("coarse_ground", coarse_ground);
     v.group("restoration", restoration);
     v.group("fine_ground", fine_ground);
+    v.group("ground_layer", ground_layer);
+    v.group("visibility", visibility);
+    v.group("evidence", evidence);
+    v.group("agreement", agreement);
   }
 };
 

@@ -21,6 +21,7 @@ int groundBins(const std::uint32_t* counts, int bins, double ground_ratio);
 
 /// Fine ground segmentation: splits the ground cell (lowest occupied bit) of each column whose
 /// upper neighbour is dynamic, by the counts of the points in the fine bins.
-void segmentFineGround(TileMap& map, const FineGroundConfig& config);
+/// @param ground_bit  of every column; -1: each column's lowest occupied one
+void segmentFineGround(TileMap& map, const FineGroundConfig& config, int ground_bit = -1);
 
 }  // namespace beautymap

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "beautymap/column_grid.h"
+#include "beautymap/evidence.h"
 
 namespace beautymap {
 
@@ -29,13 +30,15 @@ struct Tile {
     ground.fill(kNoHeight);
   }
 
-  std::array<float, kColumns> lowest;                 ///< lowest point; kNoHeight: no point
-  std::array<float, kColumns> ground;                 ///< coarse ground g_ij
+  std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
+  std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
   std::array<Bits, kColumns> dynamic{};               ///< cells that are removed
+  std::array<Bits, kColumns> strong{};  ///< those of the dynamic cells with strong evidence
   std::array<std::uint16_t, kColumns>
       static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
+  std::vector<ColumnEvidence> evidence;    ///< empty until a scan is compared
   std::vector<std::uint32_t> fine_counts;  ///< points per fine bin of the ground cell
 };
 

@@ -126,13 +126,12 @@ void swapToLittleEndian(pcl::PCLPointCloud2& cloud) {
       }
     }
   }
-  cloud.is_bigendian = false;
 }
 
 /// Moves x, y, z of type T where they are.
 template <typename T>
 void moveInPlace(pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud) {
-  const Eigen::Matrix3d R = T_map_cloud.linear();
+  const Eigen::Matrix3d r = T_map_cloud.linear();
   const Eigen::Vector3d t = T_map_cloud.translation();
   const std::size_t ox = findField(cloud, "x")->offset;
   const std::size_t oy = findField(cloud, "y")->offset;
@@ -142,9 +141,9 @@ void moveInPlace(pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_clou
     const double x = load<T>(record + ox);
     const double y = load<T>(record + oy);
     const double z = load<T>(record + oz);
-    store<T>(record + ox, R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x());
-    store<T>(record + oy, R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y());
-    store<T>(record + oz, R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z());
+    store<T>(record + ox, r(0, 0) * x + r(0, 1) * y + r(0, 2) * z + t.x());
+    store<T>(record + oy, r(1, 0) * x + r(1, 1) * y + r(1, 2) * z + t.y());
+    store<T>(record + oz, r(2, 0) * x + r(2, 1) * y + r(2, 2) * z + t.z());
   }
 }
 
@@ -208,7 +207,9 @@ std::size_t fieldTypeSize(std::uint8_t datatype) {
 std::optional<std::string> normalizeCloud(pcl::PCLPointCloud2& cloud) {
   if (auto wrong = checkFields(cloud)) return wrong;
   if (auto wrong = compactRows(cloud)) return wrong;
-  if (cloud.is_bigendian) swapToLittleEndian(cloud);
+  // Without points nothing bounds the point_step.
+  if (cloud.is_bigendian && pointCount(cloud) > 0) swapToLittleEndian(cloud);
+  cloud.is_bigendian = false;
   return std::nullopt;
 }
 

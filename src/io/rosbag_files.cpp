@@ -39,7 +39,10 @@ std::unique_ptr<rosbag::Bag> openBag(const std::string& path) {
   const std::string cure =
       ". The recording was probably cut off: run `rosbag reindex " + path + "` and try again";
   try {
-    return std::make_unique<rosbag::Bag>(path, rosbag::bagmode::Read);
+    // Not opened by its constructor: what open() has read when it throws is then never freed.
+    auto bag = std::make_unique<rosbag::Bag>();
+    bag->open(path, rosbag::bagmode::Read);
+    return bag;
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError(path + ": has no index" + cure);
   } catch (const rosbag::BagException& error) {

@@ -128,7 +128,7 @@ class TfPoses : public ScanPoses {
  private:
   std::optional<Eigen::Isometry3d> find(const std::string& frame, std::uint64_t stamp_ns,
                                         std::string& reason) {
-    const auto pose = tf_.lookup(map_frame_, frame, stamp_ns);
+    auto pose = tf_.lookup(map_frame_, frame, stamp_ns);
     if (!pose) {
       reason = "no transform from " + inQuotes(frame) + " to " + inQuotes(map_frame_) +
                " at the scan's stamp";

@@ -18,6 +18,7 @@ using test::Random;
 
 MatrixConfig matrixConfig(double res_g, double res_h, int n_bit) {
   MatrixConfig config;
+  config.bits_below = 0;
   config.res_g = res_g;
   config.res_h = res_h;
   config.n_bit = n_bit;

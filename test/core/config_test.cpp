@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -68,7 +69,9 @@ std::string valueOf(const Config& config, const std::string& name) {
 }
 
 bool isBool(const ParameterInfo& p) { return p.min == "false"; }
-bool isInteger(const ParameterInfo& p) { return p.name == "matrix.n_bit" || p.unit == "columns"; }
+bool isInteger(const ParameterInfo& p) {
+  return p.unit == "bits" || p.unit == "columns" || p.unit == "beams" || p.unit == "scans";
+}
 
 void expectEqual(const Config& a, const Config& b) {
   const std::vector<ParameterInfo> first = listParameters(a), second = listParameters(b);
@@ -206,6 +209,7 @@ TEST(Config, WhatIsWrittenIsReadAgain) {
     }
     config.scan.max_range = config.scan.min_range + 1.0;  // no contradictions
     config.matrix.res_h = config.fine_ground.bin_height + 1.0;
+    config.matrix.bits_below = std::min(config.matrix.bits_below, config.matrix.n_bit - 1);
     expectEqual(load(toYaml(config)), config);
   }
 }
@@ -274,11 +278,26 @@ TEST(Config, ThePaperFilesHaveThePublishedSettings) {
   EXPECT_EQ(kitti.matrix.res_h, 0.5);
   EXPECT_EQ(kitti.matrix.n_bit, 32);
   EXPECT_EQ(kitti.matrix.roi_size, 40.0);
+  EXPECT_EQ(kitti.matrix.bits_below, 0);
+  EXPECT_FALSE(kitti.evidence.enabled);
   const Config indoor = loadConfig(folder + "/paper_indoor.yaml");
+  EXPECT_EQ(indoor.matrix.bits_below, 0);
+  EXPECT_FALSE(indoor.evidence.enabled);
   EXPECT_EQ(indoor.matrix.res_g, 0.5);
   EXPECT_EQ(indoor.matrix.res_h, 0.2);
   EXPECT_EQ(indoor.matrix.n_bit, 32);
   EXPECT_EQ(indoor.matrix.roi_size, 10.0);
+}
+
+TEST(Config, TheReadmeListsEveryParameterWithDefaultRangeAndMeaning) {
+  std::ifstream stream(fs::path(BEAUTYMAP_SOURCE_DIR) / "README.md");
+  const std::string readme((std::istreambuf_iterator<char>(stream)),
+                           std::istreambuf_iterator<char>());
+  for (const ParameterInfo& p : listParameters(Config())) {
+    const std::string row = "| `" + p.name + "` | " + p.value + " | " + p.min + " to " + p.max +
+                            (p.unit.empty() ? "" : " " + p.unit) + " | " + p.meaning + " |";
+    EXPECT_TRUE(contains(readme, row)) << "README.md lacks: " << row;
+  }
 }
 
 }  // namespace

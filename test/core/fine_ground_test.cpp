@@ -23,6 +23,7 @@ FineGroundConfig fineConfig(double bin_height, double ground_ratio) {
 
 MatrixConfig cellsOf(double res_h) {
   MatrixConfig config;
+  config.bits_below = 0;
   config.res_h = res_h;
   return config;
 }

@@ -54,6 +54,8 @@ int countOf(const Classes& classes, PointClass wanted) {
 /// The published settings for 64 beams, in a region that covers the small worlds of the tests.
 Config paperConfig() {
   Config config;
+  config.evidence.enabled = false;
+  config.matrix.bits_below = 0;
   config.matrix.res_g = 1.0;
   config.matrix.res_h = 0.5;
   config.matrix.n_bit = 32;
@@ -67,6 +69,8 @@ Config paperConfig() {
 Config randomConfig(std::uint32_t seed) {
   Random random(seed + 77777);
   Config config;
+  config.evidence.enabled = false;
+  config.matrix.bits_below = 0;
   config.scan.min_range = random.pick<double>({0.0, 1.0});
   config.matrix.res_g = random.pick<double>({0.5, 1.0, 2.0});
   config.matrix.res_h = random.pick<double>({0.25, 0.5});
@@ -288,6 +292,30 @@ TEST(MapCleanerScene, AWalkersTrailIsRemovedAboveTheGroundCell) {
       removedOf(drive, cleanedClasses(scansOf(drive), paperConfig()), kWalker, 0.51);
   ASSERT_GT(walker.points, 1000);
   EXPECT_EQ(walker.removed, walker.points);
+}
+
+TEST(MapCleanerScene, TheDefaultRemovesAWalkerDownToTheGroundAndKeepsTheRest) {
+  const auto drive = squareWithAWalker(13);
+  const Classes classes = cleanedClasses(scansOf(drive), Config());
+  const Removed walker = removedOf(drive, classes, kWalker, 0.2);
+  ASSERT_GT(walker.points, 1000);
+  // He is in view all the time, but where he turns round his last steps are seen free only a few
+  // times.
+  EXPECT_GT(walker.removed, 0.9 * walker.points);
+  for (const int box : {kWall, kCar}) {
+    const Removed still = removedOf(drive, classes, box, 0.0);
+    ASSERT_GT(still.points, 1000);
+    EXPECT_EQ(still.removed, 0) << (box == kWall ? "wall" : "car");
+  }
+}
+
+TEST(MapCleanerScene, OneScanAloneRemovesNothingByDefault) {
+  auto drive = squareWithAWalker(13);
+  // All scans but one see the walker where he stands in the first.
+  std::vector<Scan> scans(6, drive.front().scan);
+  scans.insert(scans.begin() + 3, drive.back().scan);
+  const Classes classes = cleanedClasses(scans, Config());
+  for (const PointClass c : classes.front()) EXPECT_NE(c, PointClass::kDynamic);
 }
 
 TEST(MapCleanerScene, AParkedCarAndAWallStay) {

@@ -72,7 +72,12 @@ struct Case {
                       (corner.y - scan.anchor.y + y + 0.5) * matrix.res_g - scan.sensor.y());
   }
 
-  MatrixConfig matrix;
+  static MatrixConfig published() {
+    MatrixConfig config;
+    config.bits_below = 0;
+    return config;
+  }
+  MatrixConfig matrix = published();
   RestorationConfig config;
   PlacedScan scan;
   BitGrid scan_bits;

@@ -27,6 +27,8 @@ using test::OutputFolder;
 
 Config testConfig() {
   Config config;
+  config.evidence.enabled = false;
+  config.matrix.bits_below = 0;
   config.matrix.res_g = 1.0;
   config.matrix.res_h = 0.5;
   config.fine_ground.bin_height = 0.125;

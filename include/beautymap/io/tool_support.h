@@ -12,7 +12,7 @@
 
 // What every command line tool needs: the same options, messages, progress and exit codes.
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/evidence.h"
+
+namespace beautymap {
+
+void ColumnEvidence::observe(Bits hit, Bits seen_free) {
+  const Bits free = seen_free & ~hit;
+  if (hit != 0) {
+    hits_.increment(hit);
+    // A hit ends the stretch of frees after the hit before it.
+    const Bits ended = hit & after_.any();
+    if (ended != 0) {
+      between_.add(after_, ended);
+      after_.clear(ended);
+    }
+  }
+  if (free != 0) {
+    const Bits was_hit = hits_.any();
+    before_.increment(free & ~was_hit);
+    after_.increment(free & was_hit);
+  }
+}
+
+void ColumnEvidence::append(const ColumnEvidence& later) {
+  const Bits hit = hits_.any();
+  const Bits hit_later = later.hits_.any();
+  before_.add(later.before_, ~hit);
+  after_.add(later.before_, hit);
+  const Bits ended = hit & hit_later;
+  between_.add(after_, ended);
+  between_.add(later.between_, hit_later);
+  after_.assign(later.after_, hit_later);
+  hits_.add(later.hits_, ~Bits{0});
+}
+
+bool ColumnEvidence::isStrong(int bit, const EvidenceConfig& config) const {
+  const int free = freeBefore(bit) + freeBetween(bit) + freeAfter(bit);
+  return free > config.strong_ratio * hits(bit);
+}
+
+bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {
+  const int hit = hits(bit);
+  const int before = freeBefore(bit);
+  const int after = freeAfter(bit);
+  const int free = before + freeBetween(bit) + after;
+  // A full counter of hits stands for any number of them: what was seen free before or between them
+  // is outvoted.
+  const bool hits_known = hit < decltype(hits_)::kMax;
+  if (hits_known && free >= config.min_free && free > config.free_ratio * hit) return true;
+  const auto decides = [&](int in_order) {
+    return in_order >= config.min_free_in_order && in_order > config.order_ratio * hit;
+  };
+  return (hits_known && decides(before)) || decides(after);
+}
+
+}  // namespace beautymap

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/ground_layer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace beautymap {
+namespace {
+
+// The coarse ground is a lowest height; with noise some points lie below it.
+constexpr double kBelow = 0.1;  // [m]
+
+int binsIn(double height, double bin_height) {
+  return std::max(1, static_cast<int>(std::lround(height / bin_height)));
+}
+
+}  // namespace
+
+GroundLayer::GroundLayer(const GroundLayerConfig& config)
+    : bins_(binsIn(kBelow + config.search_height + config.max_thickness, config.bin_height)),
+      search_bins_(binsIn(kBelow + config.search_height, config.bin_height)),
+      max_bins_above_peak_(binsIn(config.max_thickness, config.bin_height)),
+      bottom_(static_cast<float>(-kBelow)),
+      bins_per_metre_(static_cast<float>(1.0 / config.bin_height)),
+      tail_share_(config.tail_share) {}
+
+int GroundLayer::binOf(float above_ground) const {
+  const float bin = (above_ground - bottom_) * bins_per_metre_;
+  // Written so that NaN is below.
+  return bin >= 0.0F ? static_cast<int>(std::min(bin, static_cast<float>(bins_))) : -1;
+}
+
+int GroundLayer::groundBins(const std::uint32_t* counts) const {
+  const auto* peak = std::max_element(counts, counts + search_bins_);
+  if (*peak == 0) return 0;
+  const double tail = tail_share_ * *peak;
+  const auto* last = std::min(counts + bins_ - 1, peak + max_bins_above_peak_);
+  const auto* top = peak;
+  while (top < last && top[1] >= tail) ++top;
+  return static_cast<int>(top - counts) + 1;
+}
+
+void findGroundLayers(TileMap& map, const GroundLayer& layer) {
+  const auto bins = static_cast<std::size_t>(layer.bins());
+  map.forEachTile([&](ColumnIndex, Tile& tile) {
+    for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
+      tile.static_bins[i] =
+          static_cast<std::uint16_t>(layer.groundBins(tile.fine_counts.data() + i * bins));
+    }
+  });
+}
+
+}  // namespace beautymap
