@@ -87,6 +87,16 @@ class Reader {
   }
 
  private:
+  [[noreturn]] static void refuseUnknown(const std::string& name,
+                                         const std::vector<std::string>& known) {
+    std::string names;
+    for (const std::string& k : known) names.append(names.empty() ? "" : ", ").append(k);
+    throw ConfigError("unknown parameter " + name + ": known are " + names);
+  }
+  [[noreturn]] static void refuseTwice(const std::string& name) {
+    throw ConfigError("parameter " + name + " comes twice");
+  }
+
   /// Refuses names that are not known, and names that come twice.
   static void refuseOthers(const YAML::Node& map, const std::vector<std::string>& known,
                            const std::string& prefix) {
@@ -94,12 +104,9 @@ class Reader {
     for (const auto& entry : map) {
       const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "(not a name)";
       if (std::find(known.begin(), known.end(), name) == known.end()) {
-        std::string names;
-        for (const std::string& k : known) names += (names.empty() ? "" : ", ") + k;
-        throw ConfigError("unknown parameter " + prefix + name + ": known are " + names);
+        refuseUnknown(prefix + name, known);
       }
-      if (!seen.insert(name).second)
-        throw ConfigError("parameter " + prefix + name + " comes twice");
+      if (!seen.insert(name).second) refuseTwice(prefix + name);
     }
   }
 

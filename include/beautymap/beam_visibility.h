@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -30,12 +31,14 @@ class BeamImage {
 
   /// The pixels of one azimuth: counts of beams, and the nearest horizontal distance at which one
   /// ended [m].
-  const std::uint16_t* counts(int azimuth) const {
-    return counts_.data() + azimuth * slope_pixels_;
-  }
-  const float* nearest(int azimuth) const { return nearest_.data() + azimuth * slope_pixels_; }
+  const std::uint16_t* counts(int azimuth) const { return counts_.data() + rowOf(azimuth); }
+  const float* nearest(int azimuth) const { return nearest_.data() + rowOf(azimuth); }
 
  private:
+  std::ptrdiff_t rowOf(int azimuth) const {
+    return static_cast<std::ptrdiff_t>(azimuth) * slope_pixels_;
+  }
+
   static constexpr float kMinSlope = -1.5F;
   static constexpr float kMaxSlope = 1.5F;
 
