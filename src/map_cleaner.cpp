@@ -30,11 +30,10 @@ void forEachTilePoint(Map& map, const PlacedScan& scan, double res_g, F f) {
 MapCleaner::MapCleaner(const Config& config)
     : config_((checkConfig(config), config)),
       encoding_(config.matrix),
-      map_(config.evidence.enabled && config.ground_layer.enabled
-               ? GroundLayer(config.ground_layer).bins()
-               : fineBinCount(config.matrix, config.fine_ground)),
-      beams_(config.visibility),
-      ground_layer_(config.ground_layer) {}
+      ground_layer_(config.ground_layer),
+      map_(usesGroundLayer() ? ground_layer_.bins()
+                             : fineBinCount(config.matrix, config.fine_ground)),
+      beams_(config.visibility) {}
 
 void MapCleaner::observe(const Scan& scan) {
   StageClock clock(times_);

@@ -79,9 +79,9 @@ class MapCleaner {
 
   Config config_;
   BinaryEncoding encoding_;
+  GroundLayer ground_layer_;
   TileMap map_;
   BeamImage beams_;
-  GroundLayer ground_layer_;
   DroppedPoints dropped_;
   PlacedScan placed_;  ///< the scan at hand; a member so that its memory is used again
   StageTimes times_;
