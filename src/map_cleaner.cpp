@@ -32,8 +32,9 @@ MapCleaner::MapCleaner(const Config& config)
       encoding_(config.matrix),
       ground_layer_(config.ground_layer),
       map_(usesGroundLayer() ? ground_layer_.bins()
-                             : fineBinCount(config.matrix, config.fine_ground)),
-      beams_(config.visibility) {}
+                             : fineBinCount(config.matrix, config.fine_ground)) {
+  if (config.evidence.enabled) beams_.emplace(config.visibility);
+}
 
 void MapCleaner::observe(const Scan& scan) {
   StageClock clock(times_);
@@ -107,10 +108,10 @@ void MapCleaner::gatherEvidence(const PlacedScan& scan, const MapWindow& map,
   StageClock clock(times_);
   const BitGrid candidates = compareMatrices(map.occupied, scan_bits);
   clock.lap("matrix_comparison");
-  beams_.fill(scan);
+  beams_->fill(scan);
   clock.lap("beam_image");
   const BitGrid seen_free =
-      cellsSeenFree(beams_, candidates, map.ground, scan, config_.matrix, config_.visibility);
+      cellsSeenFree(*beams_, candidates, map.ground, scan, config_.matrix, config_.visibility);
   clock.lap("beam_visibility");
   forEachColumn(map_, candidates.window(), [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits hit = scan_bits.at(x, y);

@@ -81,7 +81,7 @@ class MapCleaner {
   BinaryEncoding encoding_;
   GroundLayer ground_layer_;
   TileMap map_;
-  BeamImage beams_;
+  std::optional<BeamImage> beams_;  ///< large, and only evidence needs it
   DroppedPoints dropped_;
   PlacedScan placed_;  ///< the scan at hand; a member so that its memory is used again
   StageTimes times_;
