@@ -29,18 +29,16 @@ int groundBins(const std::uint32_t* counts, int bins, double ground_ratio) {
   return bins;
 }
 
-void segmentFineGround(TileMap& map, const FineGroundConfig& config, int ground_bit) {
-  const int bins = map.fineBins();
-  map.forEachTile([&](ColumnIndex, Tile& tile) {
-    for (std::size_t i = 0; i < tile.occupied.size(); ++i) {
-      const Bits ground_cell = ground_bit < 0 ? lowestBit(tile.occupied[i]) : Bits{1} << ground_bit;
-      const Bits above_ground_cell = ground_cell << 1;
-      if ((tile.dynamic[i] & above_ground_cell) == 0) continue;
-      const std::uint32_t* counts = tile.fine_counts.data() + i * static_cast<std::size_t>(bins);
-      tile.static_bins[i] =
-          static_cast<std::uint16_t>(groundBins(counts, bins, config.ground_ratio));
-    }
-  });
+void segmentFineGround(Tile& tile, const FineGroundConfig& config, int ground_bit) {
+  const int bins = tile.fineBins();
+  for (std::size_t i = 0; i < tile.occupied.size(); ++i) {
+    const Bits ground_cell = ground_bit < 0 ? lowestBit(tile.occupied[i]) : Bits{1} << ground_bit;
+    const Bits above_ground_cell = ground_cell << 1;
+    tile.static_bins[i] = 0;
+    if ((tile.dynamic[i] & above_ground_cell) == 0) continue;
+    const std::uint32_t* counts = tile.fine_counts.data() + i * static_cast<std::size_t>(bins);
+    tile.static_bins[i] = static_cast<std::uint16_t>(groundBins(counts, bins, config.ground_ratio));
+  }
 }
 
 }  // namespace beautymap

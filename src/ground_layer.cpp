@@ -41,14 +41,12 @@ int GroundLayer::groundBins(const std::uint32_t* counts) const {
   return static_cast<int>(top - counts) + 1;
 }
 
-void findGroundLayers(TileMap& map, const GroundLayer& layer) {
+void findGroundLayers(Tile& tile, const GroundLayer& layer) {
   const auto bins = static_cast<std::size_t>(layer.bins());
-  map.forEachTile([&](ColumnIndex, Tile& tile) {
-    for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
-      tile.static_bins[i] =
-          static_cast<std::uint16_t>(layer.groundBins(tile.fine_counts.data() + i * bins));
-    }
-  });
+  for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
+    tile.static_bins[i] =
+        static_cast<std::uint16_t>(layer.groundBins(tile.fine_counts.data() + i * bins));
+  }
 }
 
 }  // namespace beautymap

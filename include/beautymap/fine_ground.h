@@ -19,9 +19,9 @@ int fineBinOf(float height_in_cell, int bins, const FineGroundConfig& config);
 /// points reaches the ground points number ratio. The bins above are dynamic.
 int groundBins(const std::uint32_t* counts, int bins, double ground_ratio);
 
-/// Fine ground segmentation: splits the ground cell (lowest occupied bit) of each column whose
-/// upper neighbour is dynamic, by the counts of the points in the fine bins.
+/// Fine ground segmentation: splits the ground cell (lowest occupied bit) of each column of a tile
+/// whose upper neighbour is dynamic, by the counts of the points in the fine bins.
 /// @param ground_bit  of every column; -1: each column's lowest occupied one
-void segmentFineGround(TileMap& map, const FineGroundConfig& config, int ground_bit = -1);
+void segmentFineGround(Tile& tile, const FineGroundConfig& config, int ground_bit = -1);
 
 }  // namespace beautymap

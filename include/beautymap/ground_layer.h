@@ -34,7 +34,7 @@ class GroundLayer {
   double tail_share_;
 };
 
-/// Sets how many bins of each column are ground.
-void findGroundLayers(TileMap& map, const GroundLayer& layer);
+/// Sets how many bins of each column of a tile are ground.
+void findGroundLayers(Tile& tile, const GroundLayer& layer);
 
 }  // namespace beautymap

@@ -9,7 +9,7 @@
 #include "beautymap/beam_visibility.h"
 #include "beautymap/binary_encoding.h"
 #include "beautymap/config.h"
-#include "beautymap/ground_layer.h"
+#include "beautymap/map_judgement.h"
 #include "beautymap/scan.h"
 #include "beautymap/sight_mask.h"
 #include "beautymap/stage_times.h"
@@ -62,24 +62,14 @@ class MapCleaner {
  private:
   const PlacedScan& place(const Scan& scan);
   MapWindow windowAround(const PlacedScan& scan) const;
-  void countGroundPoints(const PlacedScan& scan);
   /// The published judgement of one scan: every candidate it leaves is dynamic.
   void findDynamic(const PlacedScan& scan, const MapWindow& map, const BitGrid& scan_bits);
   /// What one scan saw, for a judgement over all scans.
   void gatherEvidence(const PlacedScan& scan, const MapWindow& map, const BitGrid& scan_bits);
-  void judgeEvidence();
-  void keepUnsupported();
-  /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
-  /// empty column.
-  int groundBit(const Tile& tile, std::size_t column) const;
-  bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }
-  /// The bin of a height in the column's histogram of ground heights; -1 outside.
-  int groundBin(const Tile& tile, std::size_t column, float z) const;
-  bool isDynamic(const Tile& tile, std::size_t column, float z) const;
 
   Config config_;
   BinaryEncoding encoding_;
-  GroundLayer ground_layer_;
+  MapJudgement judgement_;
   TileMap map_;
   std::optional<BeamImage> beams_;  ///< large, and only evidence needs it
   DroppedPoints dropped_;

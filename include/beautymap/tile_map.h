@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "beautymap/binary_encoding.h"
 #include "beautymap/column_grid.h"
 #include "beautymap/evidence.h"
 
@@ -30,12 +31,15 @@ struct Tile {
     ground.fill(kNoHeight);
   }
 
+  int fineBins() const { return static_cast<int>(fine_counts.size()) / kColumns; }
+
   std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
   std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
-  std::array<Bits, kColumns> dynamic{};               ///< cells that are removed
-  std::array<Bits, kColumns> strong{};  ///< those of the dynamic cells with strong evidence
+  std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
+  std::array<Bits, kColumns> strong{};   ///< those of the suspected cells with strong evidence
+  std::array<Bits, kColumns> dynamic{};  ///< cells that are removed
   std::array<std::uint16_t, kColumns>
       static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
   std::vector<ColumnEvidence> evidence;    ///< empty until a scan is compared
@@ -124,6 +128,17 @@ class TileCursor {
   std::conditional_t<std::is_const<Map>::value, const Tile*, Tile*> tile_ = nullptr;
   bool valid_ = false;
 };
+
+/// Calls f(tile, column in tile, z) for each point of a scan; tile is nullptr where a const map has
+/// none.
+template <typename Map, typename F>
+void forEachTilePoint(Map& map, const PlacedScan& scan, double res_g, F f) {
+  TileCursor<Map> tile_of(map);
+  forEachColumnPoint(scan, res_g, [&](int x, int y, float z) {
+    const ColumnIndex column{scan.anchor.x + x, scan.anchor.y + y};
+    f(tile_of(column), static_cast<std::size_t>(TileMap::indexInTile(column)), z);
+  });
+}
 
 /// Calls f(x, y, tile, column in tile) for each column of a window that lies in an existing tile; x
 /// and y count from the window's corner.

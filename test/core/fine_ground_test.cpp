@@ -113,7 +113,7 @@ TEST(FineGround, SplitsAColumnLikeItsListOfPoints) {
       fill(tile, column, bit, columns[column], bins, config);
       tile.dynamic[column] = Bits{1} << (bit + 1);
     }
-    segmentFineGround(map, config);
+    segmentFineGround(tile, config);
     for (std::size_t column = 0; column < columns.size(); ++column) {
       const std::vector<bool> expected = groundPoints(columns[column], res_h, config);
       for (std::size_t i = 0; i < columns[column].size(); ++i) {
@@ -134,7 +134,7 @@ TEST(FineGround, WithoutADynamicUpperNeighbourAllGroundStays) {
   tile.dynamic[1] = Bits{1} << 4;
   tile.dynamic[2] = Bits{1} << 5;
   tile.dynamic[3] = Bits{1} << 2;
-  segmentFineGround(map, config);
+  segmentFineGround(tile, config);
   EXPECT_EQ(tile.static_bins[0], 0) << "nothing dynamic";
   EXPECT_EQ(tile.static_bins[1], 1) << "the upper neighbour is dynamic";
   EXPECT_EQ(tile.static_bins[2], 0) << "a cell further up is dynamic";
@@ -147,7 +147,7 @@ TEST(FineGround, AGroundCellInTheTopBitHasNoUpperNeighbour) {
   Tile& tile = map.tileAt({0, 0});
   tile.occupied[0] = Bits{1} << 63;
   tile.dynamic[0] = ~Bits{0} >> 1;
-  segmentFineGround(map, config);
+  segmentFineGround(tile, config);
   EXPECT_EQ(tile.static_bins[0], 0);
 }
 
@@ -162,7 +162,7 @@ TEST(FineGround, ManyBinsDoNotWrapAround) {
     fill(tile, column, 0, {0.0, 0.01 * (static_cast<double>(column) + 0.5)}, bins, config);
     tile.dynamic[column] = 0b10;
   }
-  segmentFineGround(map, config);
+  segmentFineGround(tile, config);
   for (std::size_t column = 0; column < 500; ++column) {
     ASSERT_EQ(static_cast<int>(tile.static_bins[column]), static_cast<int>(column) + 1);
   }

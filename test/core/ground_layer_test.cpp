@@ -229,7 +229,7 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   for (const ColumnIndex tile : {ColumnIndex{0, 0}, ColumnIndex{-3, 5}}) {
     for (std::uint32_t& count : map.tileAt(tile).fine_counts) count = randomCount(random);
   }
-  findGroundLayers(map, layer);
+  map.forEachTile([&](ColumnIndex, Tile& tile) { findGroundLayers(tile, layer); });
   int tiles = 0;
   map.forEachTile([&](ColumnIndex, const Tile& tile) {
     ++tiles;

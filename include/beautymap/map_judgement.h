@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "beautymap/binary_encoding.h"
+#include "beautymap/config.h"
+#include "beautymap/ground_layer.h"
+#include "beautymap/scan.h"
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+/// What the state of the map says about its cells and points: the part of the method that needs no
+/// scan at hand. Works on any tiles, all of them or those that changed, in this order:
+/// judgeEvidence, judgeAgreement, segmentGround.
+class MapJudgement {
+ public:
+  explicit MapJudgement(const Config& config);
+
+  /// How many bins per column a TileMap needs for the heights near the ground.
+  int fineBins() const;
+
+  /// Counts the heights of a scan's points near the ground of their columns.
+  void countGroundPoints(TileMap& map, const PlacedScan& scan) const;
+
+  /// Marks the cells that their own evidence holds for dynamic (Tile::suspected, Tile::strong).
+  void judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// Tile::dynamic: the suspected cells that their neighbours support. The tiles beside those that
+  /// judgeEvidence changed depend on them, too: see withNeighbours().
+  void judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// Divides the columns' ground cells into ground and object points.
+  void segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+
+  /// Whether a point of a column is removed.
+  /// @param z  its height [m] above the map's z origin
+  bool isDynamic(const Tile& tile, std::size_t column, float z) const;
+
+ private:
+  bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }
+  /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
+  /// empty column.
+  int groundBit(const Tile& tile, std::size_t column) const;
+  /// The bin of a height in the column's histogram of ground heights; -1 outside.
+  int groundBin(const Tile& tile, std::size_t column, float z) const;
+
+  Config config_;
+  BinaryEncoding encoding_;
+  GroundLayer ground_layer_;
+};
+
+/// All tiles of a map.
+std::vector<ColumnIndex> tilesOf(const TileMap& map);
+
+/// Tiles of a map and the eight around each, each once.
+std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles);
+
+}  // namespace beautymap

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/map_judgement.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "beautymap/agreement.h"
+#include "beautymap/fine_ground.h"
+
+namespace beautymap {
+
+MapJudgement::MapJudgement(const Config& config)
+    : config_(config), encoding_(config.matrix), ground_layer_(config.ground_layer) {}
+
+int MapJudgement::fineBins() const {
+  return usesGroundLayer() ? ground_layer_.bins()
+                           : fineBinCount(config_.matrix, config_.fine_ground);
+}
+
+void MapJudgement::judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+  for (const ColumnIndex index : tiles) {
+    Tile& tile = *map.findTile(index);
+    for (std::size_t column = 0; column < tile.evidence.size(); ++column) {
+      const ColumnEvidence& evidence = tile.evidence[column];
+      Bits suspected = 0, strong = 0;
+      for (Bits rest = tile.occupied[column] & evidence.everFree(); rest != 0; rest &= rest - 1) {
+        const int bit = lowestBitIndex(rest);
+        if (bit == groundBit(tile, column) || !evidence.isDynamic(bit, config_.evidence)) continue;
+        suspected |= lowestBit(rest);
+        if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);
+      }
+      tile.suspected[column] = suspected;
+      tile.strong[column] = strong;
+    }
+  }
+}
+
+void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+  for (const ColumnIndex index : tiles) {
+    Tile& tile = *map.findTile(index);
+    tile.dynamic = tile.suspected;
+    if (!config_.agreement.enabled) continue;
+    const ColumnWindow window{{index.x * Tile::kSide - 1, index.y * Tile::kSide - 1},
+                              Tile::kSide + 2};
+    const BitGrid unsupported = unsupportedCells({map.extract(window, &Tile::occupied, Bits{0}),
+                                                  map.extract(window, &Tile::suspected, Bits{0}),
+                                                  map.extract(window, &Tile::strong, Bits{0})},
+                                                 config_.matrix.bits_below, config_.agreement);
+    for (int x = 0; x < Tile::kSide; ++x) {
+      for (int y = 0; y < Tile::kSide; ++y) {
+        tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] &=
+            ~unsupported.at(x + 1, y + 1);
+      }
+    }
+  }
+}
+
+void MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+  const bool divides = config_.coarse_ground.enabled && config_.fine_ground.enabled;
+  for (const ColumnIndex index : tiles) {
+    Tile& tile = *map.findTile(index);
+    if (usesGroundLayer()) {
+      findGroundLayers(tile, ground_layer_);
+    } else if (divides) {
+      segmentFineGround(tile, config_.fine_ground,
+                        config_.evidence.enabled ? config_.matrix.bits_below : -1);
+    }
+  }
+}
+
+int MapJudgement::groundBit(const Tile& tile, std::size_t column) const {
+  if (config_.evidence.enabled) return config_.matrix.bits_below;
+  return tile.occupied[column] == 0 ? -1 : lowestBitIndex(tile.occupied[column]);
+}
+
+int MapJudgement::groundBin(const Tile& tile, std::size_t column, float z) const {
+  if (usesGroundLayer()) {
+    const float ground =
+        tile.ground[column] + static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
+    const int bin = ground_layer_.binOf(z - ground);
+    return bin < ground_layer_.bins() ? bin : -1;
+  }
+  const int bit = encoding_.bitIndex(z, tile.ground[column]);
+  if (bit < 0 || bit != groundBit(tile, column)) return -1;
+  const float cell_bottom = tile.ground[column] + static_cast<float>(bit * config_.matrix.res_h);
+  return fineBinOf(z - cell_bottom, tile.fineBins(), config_.fine_ground);
+}
+
+void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const {
+  const auto bins = static_cast<std::size_t>(map.fineBins());
+  forEachTilePoint(map, scan, config_.matrix.res_g, [&](Tile* tile, std::size_t column, float z) {
+    const int bin = groundBin(*tile, column, z);
+    if (bin >= 0) ++tile->fine_counts[column * bins + static_cast<std::size_t>(bin)];
+  });
+}
+
+bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z) const {
+  const Bits dynamic = tile.dynamic[column];
+  const int bit = dynamic == 0 ? -1 : encoding_.bitIndex(z, tile.ground[column]);
+  if (bit < 0) return false;
+  const int bin = groundBin(tile, column, z);
+  const int ground_bins = tile.static_bins[column];
+  if (usesGroundLayer()) {
+    if (bin >= 0 && bin < ground_bins) return false;
+    // What lies in the ground cell above the ground surface goes with the cell above.
+    const int judged = bit == groundBit(tile, column) ? bit + 1 : bit;
+    return (dynamic >> judged & 1) != 0;
+  }
+  return (dynamic >> bit & 1) != 0 || (ground_bins > 0 && bin >= ground_bins);
+}
+
+std::vector<ColumnIndex> tilesOf(const TileMap& map) {
+  std::vector<ColumnIndex> tiles;
+  tiles.reserve(map.tileCount());
+  map.forEachTile([&](ColumnIndex index, const Tile&) { tiles.push_back(index); });
+  return tiles;
+}
+
+std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles) {
+  std::vector<ColumnIndex> all;
+  for (const ColumnIndex tile : tiles) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const ColumnIndex near{tile.x + dx, tile.y + dy};
+        if (map.findTile(near) != nullptr) all.push_back(near);
+      }
+    }
+  }
+  const auto before = [](ColumnIndex a, ColumnIndex b) {
+    return std::tie(a.x, a.y) < std::tie(b.x, b.y);
+  };
+  std::sort(all.begin(), all.end(), before);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace beautymap

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/map_judgement.h"
+
+#include <gtest/gtest.h>
+
+#include "core/test_scenes.h"
+
+namespace beautymap {
+namespace {
+
+/// Random cells with random evidence in some columns, mostly of one height so that they support
+/// each other.
+void changeTile(Tile& tile, test::Random& random) {
+  tile.evidence.resize(Tile::kColumns);
+  for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    if (random.chance(0.3)) continue;
+    const Bits cells = Bits{0x1f} << random.integer(8, 10);
+    tile.occupied[column] |= cells;
+    for (int i = random.integer(0, 3); i > 0; --i) tile.evidence[column].observe(cells, 0);
+    const Bits free = random.chance(0.5) ? cells : random.bits();
+    for (int i = random.integer(0, 6); i > 0; --i) tile.evidence[column].observe(0, free);
+  }
+  for (std::uint32_t& count : tile.fine_counts) count += random.chance(0.5) ? 1 : 0;
+}
+
+void judge(const MapJudgement& judgement, TileMap& map, const std::vector<ColumnIndex>& tiles) {
+  const std::vector<ColumnIndex> affected = withNeighbours(map, tiles);
+  judgement.judgeEvidence(map, tiles);
+  judgement.judgeAgreement(map, affected);
+  judgement.segmentGround(map, affected);
+}
+
+TEST(MapJudgement, JudgingWhatChangedEqualsJudgingEverything) {
+  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    test::Random random(seed);
+    Config config;
+    config.agreement.enabled = seed != 0;
+    config.ground_layer.enabled = seed != 1;
+    const MapJudgement judgement(config);
+    TileMap map(judgement.fineBins());
+    for (int x = -2; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) changeTile(map.tileAt({x, y}), random);
+    }
+    judge(judgement, map, tilesOf(map));
+    for (int step = 0; step < 3; ++step) {
+      const ColumnIndex changed{random.integer(-2, 1), random.integer(-1, 1)};
+      changeTile(map.tileAt(changed), random);
+      judge(judgement, map, {changed});
+      const ColumnWindow window{{-64, -32}, 128};
+      const BitGrid dynamic = map.extract(window, &Tile::dynamic, Bits{0});
+      const auto ground = map.extract(window, &Tile::static_bins, std::uint16_t{0});
+      judge(judgement, map, tilesOf(map));
+      int dynamic_columns = 0;
+      forEachColumn(map, window, [&](int x, int y, const Tile& tile, std::size_t column) {
+        ASSERT_EQ(dynamic.at(x, y), tile.dynamic[column]) << "seed " << seed;
+        ASSERT_EQ(ground.at(x, y), tile.static_bins[column]) << "seed " << seed;
+        dynamic_columns += tile.dynamic[column] != 0 ? 1 : 0;
+      });
+      EXPECT_GT(dynamic_columns, 0);
+    }
+  }
+}
+
+TEST(MapJudgement, NeighboursAreTheExistingTilesAroundEachOnce) {
+  TileMap map(1);
+  for (int x = 0; x < 4; ++x) map.tileAt({x, 0});
+  EXPECT_EQ(withNeighbours(map, {{0, 0}, {1, 0}}).size(), 3U);
+  EXPECT_EQ(withNeighbours(map, {{3, 0}}).size(), 2U);
+  EXPECT_TRUE(withNeighbours(map, {}).empty());
+  EXPECT_EQ(tilesOf(map).size(), 4U);
+}
+
+}  // namespace
+}  // namespace beautymap
