@@ -26,42 +26,85 @@ int countAround(const Neighbourhood& columns, int bit, Bits counted) {
   return count - static_cast<int>((columns[4] & three) >> bit & 1);
 }
 
-/// Bits that belong to a run of at least `length` set bits.
-Bits inRuns(Bits column, int length) {
-  Bits starts = column;
-  for (int i = 1; i < length; ++i) starts &= column >> i;
-  Bits runs = starts;
-  for (int i = 1; i < length; ++i) runs |= starts << i;
-  return runs;
+void excludeCells(BitGrid& cells, const BitGrid& excluded) {
+  for (int x = 0; x < cells.size(); ++x) {
+    for (int y = 0; y < cells.size(); ++y) cells.at(x, y) &= ~excluded.at(x, y);
+  }
+}
+
+/// @return whether any cell is new.
+bool addCells(BitGrid& cells, const BitGrid& added) {
+  Bits any = 0;
+  for (int x = 0; x < cells.size(); ++x) {
+    for (int y = 0; y < cells.size(); ++y) {
+      any |= added.at(x, y) & ~cells.at(x, y);
+      cells.at(x, y) |= added.at(x, y);
+    }
+  }
+  return any != 0;
 }
 
 }  // namespace
 
-BitGrid unsupportedCells(const DynamicWindow& window, int ground_bit,
+BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
                          const AgreementConfig& config) {
-  BitGrid unsupported(window.dynamic.window(), 0);
+  BitGrid unsupported(window.suspected.window(), 0);
   const Bits counted = ~lowBits(ground_bit + 1);
-  for (int x = 1; x + 1 < window.dynamic.size(); ++x) {
-    for (int y = 1; y + 1 < window.dynamic.size(); ++y) {
-      const Bits cells = window.dynamic.at(x, y);
+  for (int x = 1; x + 1 < window.suspected.size(); ++x) {
+    for (int y = 1; y + 1 < window.suspected.size(); ++y) {
+      const Bits cells = window.suspected.at(x, y);
       if (cells == 0) continue;
       const Neighbourhood occupied = around(window.occupied, x, y);
-      const Neighbourhood dynamic = around(window.dynamic, x, y);
-      Bits anywhere = 0;
-      for (const Bits column : dynamic) anywhere |= column;
+      const Neighbourhood suspected = around(window.suspected, x, y);
       Bits& out = unsupported.at(x, y);
-      out = cells & ~inRuns(anywhere, config.min_run);
-      for (Bits rest = cells & ~out; rest != 0; rest &= rest - 1) {
+      for (Bits rest = cells; rest != 0; rest &= rest - 1) {
         const int bit = lowestBitIndex(rest);
         const bool strong = (window.strong.at(x, y) >> bit & 1) != 0;
         const double share = strong ? config.min_share_strong : config.min_share;
-        if (countAround(dynamic, bit, counted) < share * countAround(occupied, bit, counted)) {
+        if (countAround(suspected, bit, counted) < share * countAround(occupied, bit, counted)) {
           out |= lowestBit(rest);
         }
       }
     }
   }
   return unsupported;
+}
+
+BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
+                     const AgreementConfig& config) {
+  BitGrid joining(dynamic.window(), 0);
+  const Bits counted = ~lowBits(ground_bit + 1);
+  for (int x = 1; x + 1 < dynamic.size(); ++x) {
+    for (int y = 1; y + 1 < dynamic.size(); ++y) {
+      const Bits leaning = window.leaning.at(x, y) & ~dynamic.at(x, y);
+      const Bits unknown = window.unknown.at(x, y) & ~dynamic.at(x, y);
+      if ((leaning | unknown) == 0) continue;
+      const Neighbourhood occupied = around(window.occupied, x, y);
+      const Neighbourhood dynamic_around = around(dynamic, x, y);
+      const Bits staying = window.occupied.at(x, y) & ~dynamic.at(x, y) & counted;
+      for (Bits rest = (leaning | unknown) & ~(staying << 1); rest != 0; rest &= rest - 1) {
+        const int bit = lowestBitIndex(rest);
+        const int count = countAround(dynamic_around, bit, counted);
+        const bool leans = (leaning >> bit & 1) != 0;
+        const double share = leans ? config.join_share : config.min_share;
+        if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
+          joining.at(x, y) |= lowestBit(rest);
+        }
+      }
+    }
+  }
+  return joining;
+}
+
+int agreementMargin(const AgreementConfig& config) { return 1 + config.join_rounds; }
+
+BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
+  BitGrid dynamic = window.suspected;
+  excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
+  for (int round = 0; round < config.join_rounds; ++round) {
+    if (!addCells(dynamic, joiningCells(window, dynamic, ground_bit, config))) break;
+  }
+  return dynamic;
 }
 
 }  // namespace beautymap

@@ -35,8 +35,12 @@ void ColumnEvidence::append(const ColumnEvidence& later) {
 }
 
 bool ColumnEvidence::isStrong(int bit, const EvidenceConfig& config) const {
-  const int free = freeBefore(bit) + freeBetween(bit) + freeAfter(bit);
-  return free > config.strong_ratio * hits(bit);
+  return freeBefore(bit) + freeAfter(bit) > config.strong_ratio * hits(bit);
+}
+
+bool ColumnEvidence::isLeaning(int bit, const EvidenceConfig& config) const {
+  const int free = freeBefore(bit) + freeAfter(bit);
+  return free > 0 && free >= config.leaning_ratio * hits(bit);
 }
 
 bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace beautymap {
 namespace {
@@ -17,13 +18,18 @@ int binsIn(double height, double bin_height) {
 
 }  // namespace
 
-GroundLayer::GroundLayer(const GroundLayerConfig& config)
+GroundLayer::GroundLayer(const GroundLayerConfig& config, double cell_height)
     : bins_(binsIn(kBelow + config.search_height + config.max_thickness, config.bin_height)),
       search_bins_(binsIn(kBelow + config.search_height, config.bin_height)),
       max_bins_above_peak_(binsIn(config.max_thickness, config.bin_height)),
       bottom_(static_cast<float>(-kBelow)),
       bins_per_metre_(static_cast<float>(1.0 / config.bin_height)),
-      tail_share_(config.tail_share) {}
+      tail_share_(config.tail_share),
+      min_low_peak_(config.min_low_peak),
+      min_contrast_(config.min_contrast),
+      cell_begin_(std::min(binsIn(kBelow, config.bin_height), bins_)),
+      cell_end_(std::min(binsIn(kBelow + cell_height, config.bin_height), bins_)),
+      above_end_(std::min(binsIn(kBelow + 2.0 * cell_height, config.bin_height), bins_)) {}
 
 int GroundLayer::binOf(float above_ground) const {
   const float bin = (above_ground - bottom_) * bins_per_metre_;
@@ -31,8 +37,12 @@ int GroundLayer::binOf(float above_ground) const {
   return bin >= 0.0F ? static_cast<int>(std::min(bin, static_cast<float>(bins_))) : -1;
 }
 
-int GroundLayer::groundBins(const std::uint32_t* counts) const {
+int GroundLayer::groundBins(const std::uint32_t* counts, bool object_above) const {
   const auto* peak = std::max_element(counts, counts + search_bins_);
+  if (object_above) {
+    const auto* low_peak = std::max_element(counts, counts + std::min(cell_end_, search_bins_));
+    if (*low_peak >= min_low_peak_ * *peak) peak = low_peak;
+  }
   if (*peak == 0) return 0;
   const double tail = tail_share_ * *peak;
   const auto* last = std::min(counts + bins_ - 1, peak + max_bins_above_peak_);
@@ -41,11 +51,23 @@ int GroundLayer::groundBins(const std::uint32_t* counts) const {
   return static_cast<int>(top - counts) + 1;
 }
 
-void findGroundLayers(Tile& tile, const GroundLayer& layer) {
+bool GroundLayer::standsOut(const std::uint32_t* counts) const {
+  const auto mean = [&](int begin, int end) {
+    return std::accumulate(counts + begin, counts + end, 0.0) / std::max(1, end - begin);
+  };
+  return mean(cell_begin_, cell_end_) >= min_contrast_ * mean(cell_end_, above_end_);
+}
+
+void findGroundLayers(Tile& tile, const GroundLayer& layer, int ground_bit,
+                      const EvidenceConfig& evidence) {
   const auto bins = static_cast<std::size_t>(layer.bins());
   for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
+    const std::uint32_t* counts = tile.fine_counts.data() + i * bins;
+    const bool object_above = (tile.dynamic[i] >> (ground_bit + 1) & 1) != 0;
+    const bool is_ground = !object_above || !tile.evidence[i].isStrong(ground_bit, evidence) ||
+                           layer.standsOut(counts);
     tile.static_bins[i] =
-        static_cast<std::uint16_t>(layer.groundBins(tile.fine_counts.data() + i * bins));
+        static_cast<std::uint16_t>(is_ground ? layer.groundBins(counts, object_above) : 0);
   }
 }
 

@@ -11,7 +11,9 @@
 namespace beautymap {
 
 MapJudgement::MapJudgement(const Config& config)
-    : config_(config), encoding_(config.matrix), ground_layer_(config.ground_layer) {}
+    : config_(config),
+      encoding_(config.matrix),
+      ground_layer_(config.ground_layer, config.matrix.res_h) {}
 
 int MapJudgement::fineBins() const {
   return usesGroundLayer() ? ground_layer_.bins()
@@ -23,34 +25,47 @@ void MapJudgement::judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& t
     Tile& tile = *map.findTile(index);
     for (std::size_t column = 0; column < tile.evidence.size(); ++column) {
       const ColumnEvidence& evidence = tile.evidence[column];
-      Bits suspected = 0, strong = 0;
-      for (Bits rest = tile.occupied[column] & evidence.everFree(); rest != 0; rest &= rest - 1) {
+      Bits suspected = 0, strong = 0, leaning = 0, unknown = 0;
+      const Bits ever_free = evidence.everFree();
+      for (Bits rest = tile.occupied[column]; rest != 0; rest &= rest - 1) {
         const int bit = lowestBitIndex(rest);
-        if (bit == groundBit(tile, column) || !evidence.isDynamic(bit, config_.evidence)) continue;
-        suspected |= lowestBit(rest);
+        if (bit == groundBit(tile, column)) continue;
+        if ((ever_free >> bit & 1) == 0) {
+          if (evidence.hits(bit) <= config_.evidence.unknown_hits) unknown |= lowestBit(rest);
+          continue;
+        }
+        if (evidence.isDynamic(bit, config_.evidence)) suspected |= lowestBit(rest);
         if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);
+        if (evidence.isLeaning(bit, config_.evidence)) leaning |= lowestBit(rest);
       }
       tile.suspected[column] = suspected;
       tile.strong[column] = strong;
+      tile.leaning[column] = leaning;
+      tile.unknown[column] = unknown;
     }
   }
 }
 
 void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+  const int margin = agreementMargin(config_.agreement);
   for (const ColumnIndex index : tiles) {
     Tile& tile = *map.findTile(index);
-    tile.dynamic = tile.suspected;
-    if (!config_.agreement.enabled) continue;
-    const ColumnWindow window{{index.x * Tile::kSide - 1, index.y * Tile::kSide - 1},
-                              Tile::kSide + 2};
-    const BitGrid unsupported = unsupportedCells({map.extract(window, &Tile::occupied, Bits{0}),
-                                                  map.extract(window, &Tile::suspected, Bits{0}),
-                                                  map.extract(window, &Tile::strong, Bits{0})},
-                                                 config_.matrix.bits_below, config_.agreement);
+    if (!config_.agreement.enabled) {
+      tile.dynamic = tile.suspected;
+      continue;
+    }
+    const ColumnWindow window{{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin},
+                              Tile::kSide + 2 * margin};
+    const BitGrid dynamic = dynamicCells(
+        {map.extract(window, &Tile::occupied, Bits{0}),
+         map.extract(window, &Tile::suspected, Bits{0}),
+         map.extract(window, &Tile::strong, Bits{0}), map.extract(window, &Tile::leaning, Bits{0}),
+         map.extract(window, &Tile::unknown, Bits{0})},
+        config_.matrix.bits_below, config_.agreement);
     for (int x = 0; x < Tile::kSide; ++x) {
       for (int y = 0; y < Tile::kSide; ++y) {
-        tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] &=
-            ~unsupported.at(x + 1, y + 1);
+        tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] =
+            dynamic.at(x + margin, y + margin);
       }
     }
   }
@@ -61,7 +76,7 @@ void MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& t
   for (const ColumnIndex index : tiles) {
     Tile& tile = *map.findTile(index);
     if (usesGroundLayer()) {
-      findGroundLayers(tile, ground_layer_);
+      findGroundLayers(tile, ground_layer_, config_.matrix.bits_below, config_.evidence);
     } else if (divides) {
       segmentFineGround(tile, config_.fine_ground,
                         config_.evidence.enabled ? config_.matrix.bits_below : -1);

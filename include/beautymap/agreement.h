@@ -7,19 +7,35 @@
 
 namespace beautymap {
 
-/// Cells of a window that the evidence holds for dynamic, and what is around them.
-struct DynamicWindow {
+/// The cells of a window of the map, by what their own evidence says.
+struct EvidenceWindow {
   BitGrid occupied;
-  BitGrid dynamic;
-  BitGrid strong;  ///< those of the dynamic ones whose evidence is strong
+  BitGrid suspected;  ///< held for dynamic
+  BitGrid strong;     ///< those of the suspected ones whose evidence is strong
+  BitGrid leaning;    ///< not suspected, but seen free before or after their hits
+  BitGrid unknown;    ///< never seen free, and seldom hit
 };
 
-/// The dynamic cells that stand without support: a moving object fills neighbouring cells, an edge
-/// or a leaf does not. A cell is supported when, of the occupied cells among its 26 neighbours
-/// above the ground cell, a share is dynamic; strong evidence needs a smaller share. And what moves
-/// is tall: some vertical run of dynamic cells, within the columns around, contains the cell.
+/// The suspected cells that stand without support: a moving object fills neighbouring cells, an
+/// edge or a leaf does not. A cell is supported when, of the occupied cells among its 26 neighbours
+/// above the ground cell, a share is suspected; strong evidence needs a smaller share.
 /// @return  for the columns one in from the window's border; no bits at the border
-BitGrid unsupportedCells(const DynamicWindow& window, int ground_bit,
+BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
                          const AgreementConfig& config);
+
+/// The leaning and unknown cells that join dynamic ones, as parts of the same object: a share of
+/// their occupied neighbours is dynamic, and they do not rest on a cell that stays (what is seen
+/// over the roof of a parked car is no reason to remove the roof).
+/// @param dynamic  the dynamic cells of the same window
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
+                     const AgreementConfig& config);
+
+/// How far from its border a window is needed to know the dynamic cells within [columns].
+int agreementMargin(const AgreementConfig& config);
+
+/// The dynamic cells: the suspected ones with support, and what joins them round by round.
+/// @return  valid for the columns agreementMargin() in from the window's border
+BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 
 }  // namespace beautymap

@@ -108,6 +108,8 @@ struct GroundLayerConfig {
   double search_height = 0.4;
   double max_thickness = 0.2;
   double tail_share = 0.1;
+  double min_low_peak = 0.25;
+  double min_contrast = 4.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -120,6 +122,12 @@ struct GroundLayerConfig {
     v("max_thickness", max_thickness, 0.01, 1.0, "m", "the layer ends at most that far above it");
     v("tail_share", tail_share, 0.0, 1.0, "",
       "the layer ends where a bin has less than this share of the peak's points");
+    v("min_low_peak", min_low_peak, 0.0, 1.0, "",
+      "below a moving object a peak in the ground cell is the ground if it has this share of the "
+      "highest");
+    v("min_contrast", min_contrast, 0.0, 100.0, "",
+      "a ground cell that was itself seen free, below a moving object, is ground only if it holds "
+      "this many times the points of the cell above");
   }
 };
 
@@ -147,10 +155,12 @@ struct VisibilityConfig {
 struct EvidenceConfig {
   bool enabled = true;
   int min_free = 2;
-  double free_ratio = 0.5;
+  double free_ratio = 1.0;
   int min_free_in_order = 5;
-  double order_ratio = 0.08;
-  double strong_ratio = 2.0;
+  double order_ratio = 0.1;
+  double strong_ratio = 1.0;
+  double leaning_ratio = 0.03;
+  int unknown_hits = 12;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -163,7 +173,14 @@ struct EvidenceConfig {
       "or it was seen free in as many before its first or after its last hit");
     v("order_ratio", order_ratio, 0.0, 100.0, "", "and there in more than this times its hits");
     v("strong_ratio", strong_ratio, 0.0, 100.0, "",
-      "evidence is strong when a cell was seen free in more than this times its hits");
+      "evidence is strong when a cell was seen free before its first and after its last hit in "
+      "more "
+      "than this times its hits");
+    v("leaning_ratio", leaning_ratio, 0.0, 100.0, "",
+      "a cell leans to dynamic when it was seen free there at least once and in this times its "
+      "hits");
+    v("unknown_hits", unknown_hits, 0, 1023, "scans",
+      "a cell that was never seen free is unknown when no more scans hit it");
   }
 };
 
@@ -171,17 +188,19 @@ struct AgreementConfig {
   bool enabled = true;
   double min_share = 0.6;
   double min_share_strong = 0.2;
-  int min_run = 3;
+  double join_share = 0.4;
+  int join_rounds = 8;
 
   template <typename Visitor>
   void describe(Visitor& v) {
     v("enabled", enabled, false, true, "",
-      "keep dynamic cells that their neighbours do not support (only with evidence)");
+      "let neighbouring cells decide what belongs to a moving object (only with evidence)");
     v("min_share", min_share, 0.0, 1.0, "",
-      "share of a cell's occupied neighbours that must be dynamic, too");
+      "share of its occupied neighbours that must be dynamic for a cell to be, too");
     v("min_share_strong", min_share_strong, 0.0, 1.0, "", "the same where the evidence is strong");
-    v("min_run", min_run, 1, 16, "bits",
-      "height of dynamic cells above each other, in the columns around, that a moving object has");
+    v("join_share", join_share, 0.0, 1.0, "", "the same where a cell only leans to dynamic");
+    v("join_rounds", join_rounds, 0, 30, "columns",
+      "how far an object grows over leaning and unknown cells");
   }
 };
 

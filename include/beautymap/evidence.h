@@ -98,8 +98,11 @@ class ColumnEvidence {
   /// Whether the cell is dynamic: seen free often enough for its hits, or often enough before the
   /// first or after the last.
   bool isDynamic(int bit, const EvidenceConfig& config) const;
-  /// Whether it was seen free so much more often than hit that few neighbours need to agree.
+  /// Whether it was seen free, in the order of something that came or went, so much more often than
+  /// hit that few neighbours need to agree.
   bool isStrong(int bit, const EvidenceConfig& config) const;
+  /// Whether something speaks for dynamic, though not enough without neighbours that are.
+  bool isLeaning(int bit, const EvidenceConfig& config) const;
 
  private:
   // Free counts before the first and after the last hit join when stretches are appended: equal

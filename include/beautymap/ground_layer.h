@@ -14,16 +14,22 @@ namespace beautymap {
 /// how many points an object left above it.
 class GroundLayer {
  public:
-  explicit GroundLayer(const GroundLayerConfig& config);
+  /// @param cell_height  [m] of the ground cell and the one above it
+  GroundLayer(const GroundLayerConfig& config, double cell_height);
 
   int bins() const { return bins_; }
   /// The bin of a height above the column's coarse ground [m]; -1 below, bins() above all of them.
   int binOf(float above_ground) const;
 
   /// How many bins, from below, are ground: up to where the counts around the peak have fallen off.
-  /// 0 without points.
+  /// 0 without points. Where an object was above the ground cell its points can outnumber those of
+  /// the ground: then a lower peak in the ground cell will do.
   /// @param counts  points per bin
-  int groundBins(const std::uint32_t* counts) const;
+  int groundBins(const std::uint32_t* counts, bool object_above) const;
+
+  /// Whether the ground cell holds so many more points than the one above that a surface is in it,
+  /// and not just the lower end of an object in a column whose ground no beam ever met.
+  bool standsOut(const std::uint32_t* counts) const;
 
  private:
   int bins_;
@@ -32,9 +38,17 @@ class GroundLayer {
   float bottom_;
   float bins_per_metre_;
   double tail_share_;
+  double min_low_peak_;
+  double min_contrast_;
+  // The ground cell's bins, and those of the cell above it.
+  int cell_begin_;
+  int cell_end_;
+  int above_end_;
 };
 
-/// Sets how many bins of each column of a tile are ground.
-void findGroundLayers(Tile& tile, const GroundLayer& layer);
+/// Sets how many bins of each column are ground. None where all speaks against ground: the cell
+/// above is dynamic, the ground cell itself has strong evidence, and no surface stands out in it.
+void findGroundLayers(Tile& tile, const GroundLayer& layer, int ground_bit,
+                      const EvidenceConfig& evidence);
 
 }  // namespace beautymap

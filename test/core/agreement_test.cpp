@@ -17,9 +17,9 @@ bool isSet(const BitGrid& grid, int x, int y, int bit) {
   return bit >= 0 && bit < kMaxBits && (grid.at(x, y) >> bit & 1) != 0;
 }
 
-DynamicWindow emptyWindow(int size) {
+EvidenceWindow emptyWindow(int size) {
   const BitGrid none(ColumnWindow{{-7, 11}, size}, 0);
-  return {none, none, none};
+  return {none, none, none, none, none};
 }
 
 /// Cells from `low` to `high`, both included.
@@ -33,9 +33,9 @@ void set(BitGrid& grid, const Cells& cells) {
     for (int y = cells.y_low; y <= cells.y_high; ++y) grid.at(x, y) |= bits;
   }
 }
-void setDynamic(DynamicWindow& window, const Cells& cells) {
+void setSuspected(EvidenceWindow& window, const Cells& cells) {
   set(window.occupied, cells);
-  set(window.dynamic, cells);
+  set(window.suspected, cells);
 }
 
 int countOf(const BitGrid& grid) {
@@ -47,127 +47,117 @@ int countOf(const BitGrid& grid) {
 }
 
 TEST(Agreement, AnIsolatedDynamicCellInAWallIsUnsupported) {
-  DynamicWindow window = emptyWindow(9);
+  EvidenceWindow window = emptyWindow(9);
   set(window.occupied, {4, 4, 0, 8, kGround, 30});
-  setDynamic(window, {4, 4, 4, 4, 20, 20});
-  AgreementConfig config;
+  setSuspected(window, {4, 4, 4, 4, 20, 20});
+  const AgreementConfig config;
   const BitGrid unsupported = unsupportedCells(window, kGround, config);
   EXPECT_EQ(unsupported.at(4, 4), Bits{1} << 20);
   EXPECT_EQ(countOf(unsupported), 1);
-  // Neither is its height the only reason, nor does strong evidence help it.
-  config.min_run = 1;
-  EXPECT_EQ(unsupportedCells(window, kGround, config).at(4, 4), Bits{1} << 20);
-  window.strong = window.dynamic;
+  // Strong evidence does not help it.
+  window.strong = window.suspected;
   EXPECT_EQ(unsupportedCells(window, kGround, config).at(4, 4), Bits{1} << 20);
 }
 
 TEST(Agreement, ABlockInFreeSpaceIsSupported) {
-  DynamicWindow window = emptyWindow(9);
-  setDynamic(window, {3, 5, 3, 5, kGround + 2, kGround + 6});
-  EXPECT_EQ(countOf(window.dynamic), 45);
+  EvidenceWindow window = emptyWindow(9);
+  setSuspected(window, {3, 5, 3, 5, kGround + 2, kGround + 6});
+  EXPECT_EQ(countOf(window.suspected), 45);
   EXPECT_EQ(countOf(unsupportedCells(window, kGround, {})), 0);
 }
 
 TEST(Agreement, ABlockOnTheGroundIsSupportedBecauseTheGroundDoesNotCount) {
-  DynamicWindow window = emptyWindow(9);
+  EvidenceWindow window = emptyWindow(9);
   set(window.occupied, {0, 8, 0, 8, kGround, kGround});
-  setDynamic(window, {3, 5, 3, 5, kGround + 1, kGround + 5});
+  setSuspected(window, {3, 5, 3, 5, kGround + 1, kGround + 5});
   EXPECT_EQ(countOf(unsupportedCells(window, kGround, {})), 0);
   // Were the ground below, its cells would count as neighbours that stay.
   EXPECT_GT(countOf(unsupportedCells(window, kGround - 1, {})), 0);
 }
 
-TEST(Agreement, AFlatLayerAboveTheGroundIsUnsupported) {
-  const AgreementConfig config;
-  for (int height = 1; height <= config.min_run + 1; ++height) {
-    DynamicWindow window = emptyWindow(12);
-    setDynamic(window, {0, 11, 0, 11, kGround + 1, kGround + height});
-    const int expected = height < config.min_run ? 10 * 10 * height : 0;
-    EXPECT_EQ(countOf(unsupportedCells(window, kGround, config)), expected) << height;
-  }
-}
-
-TEST(Agreement, ARunMayLeanOverNeighbouringColumns) {
-  DynamicWindow window = emptyWindow(9);
-  setDynamic(window, {3, 3, 4, 4, 20, 20});
-  setDynamic(window, {4, 4, 4, 4, 21, 21});
-  setDynamic(window, {5, 5, 5, 5, 22, 22});
-  const BitGrid unsupported = unsupportedCells(window, kGround, {});
-  // The middle one sees all three, the outer ones two each.
-  EXPECT_EQ(unsupported.at(4, 4), Bits{0});
-  EXPECT_EQ(unsupported.at(3, 4), Bits{1} << 20);
-  EXPECT_EQ(unsupported.at(5, 5), Bits{1} << 22);
-}
-
 TEST(Agreement, StrongEvidenceNeedsFewerNeighbours) {
   // Something thin that went by along a wall.
-  DynamicWindow window = emptyWindow(9);
+  EvidenceWindow window = emptyWindow(9);
   set(window.occupied, {3, 3, 0, 8, 10, 30});
-  setDynamic(window, {4, 4, 0, 8, 10, 30});
+  setSuspected(window, {4, 4, 0, 8, 10, 30});
   EXPECT_EQ(unsupportedCells(window, kGround, {}).at(4, 4), lowBits(31) & ~lowBits(10));
-  window.strong = window.dynamic;
+  window.strong = window.suspected;
   EXPECT_EQ(countOf(unsupportedCells(window, kGround, {})), 0);
 }
 
 TEST(Agreement, TheHighestAndLowestBitsAreNoNeighbours) {
-  DynamicWindow window = emptyWindow(5);
+  EvidenceWindow window = emptyWindow(5);
   set(window.occupied, {1, 3, 1, 3, 0, 0});
-  setDynamic(window, {2, 2, 2, 2, 61, 63});
+  setSuspected(window, {2, 2, 2, 2, 61, 63});
   EXPECT_EQ(countOf(unsupportedCells(window, -1, {})), 0);
 }
 
-/// The rule, one cell after the other.
-bool isSupported(const DynamicWindow& window, int x, int y, int bit, int ground_bit,
-                 const AgreementConfig& config) {
-  const auto any_dynamic = [&](int at) {
-    for (int nx = x - 1; nx <= x + 1; ++nx) {
-      for (int ny = y - 1; ny <= y + 1; ++ny) {
-        if (isSet(window.dynamic, nx, ny, at)) return true;
-      }
-    }
-    return false;
-  };
-  int run = 1;
-  for (int at = bit + 1; any_dynamic(at); ++at) ++run;
-  for (int at = bit - 1; any_dynamic(at); --at) ++run;
-  if (run < config.min_run) return false;
+/// The neighbours of a cell above the ground cell.
+struct Around {
+  int occupied = 0;
+  int dynamic = 0;
+};
 
-  int occupied = 0, dynamic = 0;
+Around look(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, int bit,
+            int ground_bit) {
+  Around around;
   for (int nx = x - 1; nx <= x + 1; ++nx) {
     for (int ny = y - 1; ny <= y + 1; ++ny) {
       for (int at = bit - 1; at <= bit + 1; ++at) {
         if ((nx == x && ny == y && at == bit) || at <= ground_bit) continue;
-        occupied += isSet(window.occupied, nx, ny, at);
-        dynamic += isSet(window.dynamic, nx, ny, at);
+        around.occupied += isSet(window.occupied, nx, ny, at);
+        around.dynamic += isSet(dynamic, nx, ny, at);
       }
     }
   }
+  return around;
+}
+
+/// The rule of support, one cell after the other.
+bool isSupported(const EvidenceWindow& window, int x, int y, int bit, int ground_bit,
+                 const AgreementConfig& config) {
+  const Around around = look(window, window.suspected, x, y, bit, ground_bit);
   const bool strong = isSet(window.strong, x, y, bit);
-  return dynamic >= (strong ? config.min_share_strong : config.min_share) * occupied;
+  return around.dynamic >= (strong ? config.min_share_strong : config.min_share) * around.occupied;
+}
+
+/// The rule of joining, one cell after the other.
+bool joins(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, int bit,
+           int ground_bit, const AgreementConfig& config) {
+  if (isSet(dynamic, x, y, bit)) return false;
+  const bool leaning = isSet(window.leaning, x, y, bit);
+  if (!leaning && !isSet(window.unknown, x, y, bit)) return false;
+  const bool rests_on_what_stays = bit - 1 > ground_bit && isSet(window.occupied, x, y, bit - 1) &&
+                                   !isSet(dynamic, x, y, bit - 1);
+  if (rests_on_what_stays) return false;
+  const Around around = look(window, dynamic, x, y, bit, ground_bit);
+  const double share = leaning ? config.join_share : config.min_share;
+  return around.dynamic > 0 && around.dynamic >= share * around.occupied;
 }
 
 /// Noise, full columns and blocks.
-DynamicWindow randomWindow(Random& random) {
-  DynamicWindow window = emptyWindow(random.integer(1, 9));
-  const int size = window.dynamic.size();
+EvidenceWindow randomWindow(Random& random, int size) {
+  EvidenceWindow window = emptyWindow(size);
   const double density = random.pick<double>({0.1, 0.5, 0.9});
   const auto sparse = [&] { return random.chance(density) ? random.bits() : Bits{0}; };
   for (int x = 0; x < size; ++x) {
     for (int y = 0; y < size; ++y) {
       window.occupied.at(x, y) = random.bits() | sparse();
-      window.dynamic.at(x, y) = sparse() & sparse();
+      window.suspected.at(x, y) = sparse() & sparse();
     }
   }
   for (int block = random.integer(0, 4); block > 0; --block) {
     const int x = random.integer(0, size - 1), y = random.integer(0, size - 1);
     const int bit = random.integer(0, kMaxBits - 1);
-    set(window.dynamic, {x, random.integer(x, size - 1), y, random.integer(y, size - 1), bit,
-                         random.integer(bit, kMaxBits - 1)});
+    set(window.suspected, {x, random.integer(x, size - 1), y, random.integer(y, size - 1), bit,
+                           random.integer(bit, kMaxBits - 1)});
   }
   for (int x = 0; x < size; ++x) {
     for (int y = 0; y < size; ++y) {
-      window.dynamic.at(x, y) &= window.occupied.at(x, y);
-      window.strong.at(x, y) = window.dynamic.at(x, y) & random.bits();
+      window.suspected.at(x, y) &= window.occupied.at(x, y);
+      window.strong.at(x, y) = window.suspected.at(x, y) & random.bits();
+      window.leaning.at(x, y) = window.occupied.at(x, y) & random.bits();
+      window.unknown.at(x, y) = window.occupied.at(x, y) & ~window.leaning.at(x, y) & random.bits();
     }
   }
   return window;
@@ -177,26 +167,25 @@ TEST(Agreement, AgreesWithLoopsOverTheNeighbours) {
   int supported = 0, unsupported = 0;
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
-    const DynamicWindow window = randomWindow(random);
+    const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
     const int ground_bit = random.integer(-1, 40);
     AgreementConfig config;
-    config.min_run = random.pick<int>({1, 2, 3, 5, 16});
     config.min_share = random.pick<double>({0.0, 0.25, 0.5, 0.6, 1.0});
     config.min_share_strong = random.pick<double>({0.0, 0.2, 0.5});
     const BitGrid result = unsupportedCells(window, ground_bit, config);
-    const int size = window.dynamic.size();
+    const int size = window.suspected.size();
     ASSERT_EQ(result.size(), size);
-    ASSERT_EQ(result.window().corner, window.dynamic.window().corner);
+    ASSERT_EQ(result.window().corner, window.suspected.window().corner);
     for (int x = 0; x < size; ++x) {
       for (int y = 0; y < size; ++y) {
         const bool border = x == 0 || y == 0 || x == size - 1 || y == size - 1;
-        ASSERT_EQ(result.at(x, y) & ~window.dynamic.at(x, y), Bits{0}) << "seed " << seed;
+        ASSERT_EQ(result.at(x, y) & ~window.suspected.at(x, y), Bits{0}) << "seed " << seed;
         if (border) {
           ASSERT_EQ(result.at(x, y), Bits{0}) << "seed " << seed;
           continue;
         }
         for (int bit = 0; bit < kMaxBits; ++bit) {
-          if (!isSet(window.dynamic, x, y, bit)) continue;
+          if (!isSet(window.suspected, x, y, bit)) continue;
           const bool expected = isSupported(window, x, y, bit, ground_bit, config);
           ASSERT_EQ(!isSet(result, x, y, bit), expected)
               << "seed " << seed << " column " << x << ", " << y << " bit " << bit;
@@ -209,10 +198,107 @@ TEST(Agreement, AgreesWithLoopsOverTheNeighbours) {
   EXPECT_GT(unsupported, 10000);
 }
 
+TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
+  int joining = 0, staying = 0;
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    const int ground_bit = random.integer(-1, 40);
+    AgreementConfig config;
+    config.min_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
+    config.join_share = random.pick<double>({0.0, 0.2, 0.4, 0.8});
+    const BitGrid result = joiningCells(window, window.suspected, ground_bit, config);
+    const int size = result.size();
+    for (int x = 0; x < size; ++x) {
+      for (int y = 0; y < size; ++y) {
+        const bool border = x == 0 || y == 0 || x == size - 1 || y == size - 1;
+        for (int bit = 0; bit < kMaxBits; ++bit) {
+          const bool expected =
+              !border && joins(window, window.suspected, x, y, bit, ground_bit, config);
+          ASSERT_EQ(isSet(result, x, y, bit), expected)
+              << "seed " << seed << " column " << x << ", " << y << " bit " << bit;
+          ++(expected ? joining : staying);
+        }
+      }
+    }
+  }
+  EXPECT_GT(joining, 5000);
+  EXPECT_GT(staying, 10000);
+}
+
+/// A car of which only the outline was seen free.
+EvidenceWindow carThatLeft() {
+  EvidenceWindow window = emptyWindow(20);
+  set(window.occupied, {0, 19, 0, 19, kGround, kGround});
+  setSuspected(window, {4, 14, 4, 9, kGround + 1, kGround + 6});
+  const Cells inside{6, 12, 6, 7, kGround + 1, kGround + 4};
+  for (int x = inside.x_low; x <= inside.x_high; ++x) {
+    for (int y = inside.y_low; y <= inside.y_high; ++y) {
+      window.suspected.at(x, y) &= ~(lowBits(inside.bit_high + 1) & ~lowBits(inside.bit_low));
+    }
+  }
+  set(window.leaning, inside);
+  return window;
+}
+
+TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
+  EvidenceWindow window = carThatLeft();
+  AgreementConfig config;
+  const int car = 11 * 6 * 6, inside = 7 * 2 * 4;
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car);
+  config.join_rounds = 0;
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside);
+  config.join_rounds = 1;
+  const int after_one = countOf(dynamicCells(window, kGround, config));
+  EXPECT_GT(after_one, car - inside);
+  EXPECT_LT(after_one, car);
+  // Cells that nothing speaks for do not join.
+  window.leaning = BitGrid(window.leaning.window(), 0);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside);
+}
+
+TEST(Agreement, WhatRestsOnACellThatStaysDoesNotJoin) {
+  // Seen over the roof of a parked car, beside one that drove by.
+  EvidenceWindow window = emptyWindow(12);
+  setSuspected(window, {2, 4, 4, 6, kGround + 1, kGround + 8});
+  set(window.occupied, {5, 5, 4, 6, kGround + 1, kGround + 7});
+  set(window.leaning, {5, 5, 4, 6, kGround + 7, kGround + 7});
+  EXPECT_EQ(dynamicCells(window, kGround, {}).at(5, 5), Bits{0});
+  window.leaning = window.occupied;  // nothing below stays
+  EXPECT_NE(dynamicCells(window, kGround, {}).at(5, 5), Bits{0});
+}
+
+TEST(Agreement, CellsInsideTheMarginDoNotDependOnWhatIsOutside) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Random random(seed);
+    AgreementConfig config;
+    config.join_rounds = random.integer(0, 3);
+    const int margin = agreementMargin(config);
+    const int inner = random.integer(1, 5), outer = inner + 2 * margin + 2;
+    const EvidenceWindow large = randomWindow(random, outer);
+    const auto cut = [&](const BitGrid& grid) {
+      BitGrid part(ColumnWindow{{0, 0}, outer - 2}, 0);
+      for (int x = 0; x < part.size(); ++x) {
+        for (int y = 0; y < part.size(); ++y) part.at(x, y) = grid.at(x + 1, y + 1);
+      }
+      return part;
+    };
+    const EvidenceWindow small{cut(large.occupied), cut(large.suspected), cut(large.strong),
+                               cut(large.leaning), cut(large.unknown)};
+    const BitGrid of_large = dynamicCells(large, kGround, config);
+    const BitGrid of_small = dynamicCells(small, kGround, config);
+    for (int x = margin; x < margin + inner; ++x) {
+      for (int y = margin; y < margin + inner; ++y) {
+        ASSERT_EQ(of_small.at(x, y), of_large.at(x + 1, y + 1)) << "seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(Agreement, WindowsWithoutAnInsideHaveNoCells) {
   for (const int size : {0, 1, 2}) {
-    DynamicWindow window = emptyWindow(size);
-    if (size > 0) setDynamic(window, {0, size - 1, 0, size - 1, 0, 63});
+    EvidenceWindow window = emptyWindow(size);
+    if (size > 0) setSuspected(window, {0, size - 1, 0, size - 1, 0, 63});
     EXPECT_EQ(countOf(unsupportedCells(window, kGround, {})), 0);
   }
 }

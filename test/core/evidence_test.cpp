@@ -362,7 +362,7 @@ TEST(EvidenceRules, OneFreeScanRemovesNothing) {
 TEST(EvidenceRules, WhatPassesByIsDynamic) {
   EXPECT_TRUE(isDynamic({{kFree, 10}, {kHit, 1}, {kFree, 10}}));
   EXPECT_TRUE(isDynamic({{kHit, 1}, {kFree, 2}}));
-  EXPECT_TRUE(isDynamic({{kFree, 2}, {kHit, 3}}));
+  EXPECT_TRUE(isDynamic({{kFree, 4}, {kHit, 3}}));
 }
 
 TEST(EvidenceRules, WhatIsNeverSeenFreeIsStatic) {
@@ -373,15 +373,15 @@ TEST(EvidenceRules, WhatIsNeverSeenFreeIsStatic) {
 
 TEST(EvidenceRules, AParkedCarThatDrivesAwayIsDynamic) {
   // Far fewer frees than hits, but they all come after the last hit.
-  EXPECT_TRUE(isDynamic({{kHit, 60}, {kFree, 5}}));
-  EXPECT_TRUE(isDynamic({{kHit, 60}, {kUnseen, 200}, {kFree, 5}}));
-  EXPECT_FALSE(isDynamic({{kHit, 60}, {kFree, 4}}));
-  EXPECT_FALSE(isDynamic({{kHit, 100}, {kFree, 8}}));
-  EXPECT_TRUE(isDynamic({{kHit, 100}, {kFree, 9}}));
+  EXPECT_TRUE(isDynamic({{kHit, 40}, {kFree, 5}}));
+  EXPECT_TRUE(isDynamic({{kHit, 40}, {kUnseen, 200}, {kFree, 5}}));
+  EXPECT_FALSE(isDynamic({{kHit, 40}, {kFree, 4}}));
+  EXPECT_FALSE(isDynamic({{kHit, 100}, {kFree, 10}}));
+  EXPECT_TRUE(isDynamic({{kHit, 100}, {kFree, 11}}));
 }
 
 TEST(EvidenceRules, WhatArrivesAndStaysBecomesStaticAgain) {
-  EXPECT_TRUE(isDynamic({{kFree, 10}, {kHit, 100}}));
+  EXPECT_TRUE(isDynamic({{kFree, 10}, {kHit, 90}}));
   EXPECT_FALSE(isDynamic({{kFree, 10}, {kHit, 130}}));
   EXPECT_FALSE(isDynamic({{kFree, 10}, {kHit, 10000}}));
 }
@@ -389,17 +389,18 @@ TEST(EvidenceRules, WhatArrivesAndStaysBecomesStaticAgain) {
 TEST(EvidenceRules, FreesBetweenHitsAreNoOrder) {
   EXPECT_TRUE(isDynamic({{kHit, 60}, {kFree, 20}}));
   EXPECT_FALSE(isDynamic({{kHit, 30}, {kFree, 20}, {kHit, 30}}));
-  EXPECT_TRUE(isDynamic({{kHit, 30}, {kFree, 31}, {kHit, 30}}));
+  EXPECT_TRUE(isDynamic({{kHit, 30}, {kFree, 61}, {kHit, 30}}));
 }
 
 TEST(EvidenceRules, FreesBeforeAndAfterCountTogetherOnlyForTheRatio) {
   EXPECT_FALSE(isDynamic({{kFree, 4}, {kHit, 40}, {kFree, 4}}));
-  EXPECT_TRUE(isDynamic({{kFree, 4}, {kHit, 15}, {kFree, 4}}));
+  EXPECT_TRUE(isDynamic({{kFree, 4}, {kHit, 7}, {kFree, 4}}));
 }
 
 TEST(EvidenceRules, FullHitsAreNeverOutvotedByTheRatio) {
   EvidenceConfig config;
   config.order_ratio = 100.0;
+  config.free_ratio = 0.5;
   const Stretch short_gap{kFree, 200};
   const std::vector<Stretch> gaps{{kHit, 1}, short_gap, {kHit, 1}, short_gap,
                                   {kHit, 1}, short_gap, {kHit, 1}, short_gap};
@@ -417,19 +418,33 @@ TEST(EvidenceRules, FullHitsAreNeverOutvotedByTheRatio) {
 }
 
 TEST(EvidenceRules, WhatStoodLongerThanTheHitsCountIsDynamicOnceItHasGone) {
-  EXPECT_TRUE(isDynamic({{kHit, 5000}, {kFree, 100}}));
+  EXPECT_TRUE(isDynamic({{kHit, 5000}, {kFree, 120}}));
   EXPECT_FALSE(isDynamic({{kHit, 5000}, {kFree, 50}}));
 }
 
-TEST(EvidenceRules, StrongIsFreeInMoreThanTheRatioOfTheHits) {
+TEST(EvidenceRules, StrongIsFreeBeforeAndAfterInMoreThanTheRatioOfTheHits) {
   EXPECT_FALSE(isStrong({}));
-  EXPECT_FALSE(isStrong({{kHit, 10}, {kFree, 20}}));
-  EXPECT_TRUE(isStrong({{kHit, 10}, {kFree, 21}}));
-  EXPECT_TRUE(isStrong({{kFree, 7}, {kHit, 5}, {kFree, 7}, {kHit, 5}, {kFree, 7}}));
+  EXPECT_FALSE(isStrong({{kHit, 10}, {kFree, 10}}));
+  EXPECT_TRUE(isStrong({{kHit, 10}, {kFree, 11}}));
+  EXPECT_TRUE(isStrong({{kFree, 6}, {kHit, 10}, {kFree, 5}}));
+  EXPECT_FALSE(isStrong({{kFree, 5}, {kHit, 5}, {kFree, 50}, {kHit, 5}, {kFree, 5}}));
   EvidenceConfig config;
   config.strong_ratio = 5.0;
   EXPECT_FALSE(isStrong({{kHit, 10}, {kFree, 50}}, config));
   EXPECT_TRUE(isStrong({{kHit, 10}, {kFree, 51}}, config));
+}
+
+TEST(EvidenceRules, LeaningIsSeenFreeBeforeOrAfterButOnceInManyHits) {
+  const EvidenceConfig config;
+  const auto isLeaning = [&](const std::vector<Stretch>& stretches) {
+    return evidenceOf(stretches).isLeaning(kCell, config);
+  };
+  EXPECT_FALSE(isLeaning({}));
+  EXPECT_FALSE(isLeaning({{kHit, 3}}));
+  EXPECT_TRUE(isLeaning({{kHit, 30}, {kFree, 1}}));
+  EXPECT_TRUE(isLeaning({{kFree, 1}, {kHit, 30}}));
+  EXPECT_FALSE(isLeaning({{kHit, 40}, {kFree, 1}}));
+  EXPECT_FALSE(isLeaning({{kHit, 5}, {kFree, 50}, {kHit, 5}}));
 }
 
 TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
@@ -442,6 +457,7 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
     config.min_free_in_order = random.integer(1, 20);
     config.order_ratio = random.uniform(0.0, 1.0);
     config.strong_ratio = random.uniform(0.0, 4.0);
+    config.leaning_ratio = random.uniform(0.0, 0.5);
     const std::vector<Events> scans = randomEvents(random, random.pick<int>({5, 40, 1500}));
     const ColumnEvidence evidence = observed(scans);
     for (int bit = 0; bit < kMaxBits; ++bit) {
@@ -455,9 +471,12 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
       // What was free before more hits than can be counted has become static.
       const bool by_order = (c.hits < kMaxHits && decides(c.before)) || decides(c.after);
       ASSERT_EQ(evidence.isDynamic(bit, config), by_ratio || by_order) << "seed " << seed;
-      ASSERT_EQ(evidence.isStrong(bit, config), free > config.strong_ratio * c.hits);
+      const int in_order = c.before + c.after;
+      ASSERT_EQ(evidence.isStrong(bit, config), in_order > config.strong_ratio * c.hits);
+      const bool leans = in_order > 0 && in_order >= config.leaning_ratio * c.hits;
+      ASSERT_EQ(evidence.isLeaning(bit, config), leans);
       dynamic += by_ratio || by_order;
-      strong += free > config.strong_ratio * c.hits;
+      strong += in_order > config.strong_ratio * c.hits;
     }
   }
   EXPECT_GT(dynamic, 500);

@@ -18,6 +18,7 @@ namespace {
 using test::Random;
 
 constexpr double kBottom = -0.1;  // of the lowest bin, above the coarse ground [m]
+constexpr double kCell = 0.2;     // height of a bit [m]
 
 /// The sum of twelve uniform values is as good as normally distributed.
 double noise(Random& random, double sigma) {
@@ -30,7 +31,9 @@ double noise(Random& random, double sigma) {
 class Histogram {
  public:
   explicit Histogram(const GroundLayerConfig& config)
-      : config_(config), layer_(config), counts_(static_cast<std::size_t>(layer_.bins()), 0) {}
+      : config_(config),
+        layer_(config, kCell),
+        counts_(static_cast<std::size_t>(layer_.bins()), 0) {}
 
   void add(double above_ground) {
     const int bin = layer_.binOf(static_cast<float>(above_ground));
@@ -43,7 +46,10 @@ class Histogram {
     for (int i = 0; i < points; ++i) add(random.uniform(low, high));
   }
 
-  int groundBins() const { return layer_.groundBins(counts_.data()); }
+  int groundBins(bool object_above = false) const {
+    return layer_.groundBins(counts_.data(), object_above);
+  }
+  bool standsOut() const { return layer_.standsOut(counts_.data()); }
   /// Where the layer ends above the coarse ground [m].
   double end() const { return kBottom + groundBins() * config_.bin_height; }
 
@@ -131,6 +137,31 @@ TEST(GroundLayer, AnObjectThatStandsOnTheGroundLiftsTheLayerByItsThicknessAtMost
   }
 }
 
+TEST(GroundLayer, BelowAnObjectASmallPeakInTheGroundCellIsTheGround) {
+  // A car stood there: three times the points of the ground, from 0.2 m on.
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Random random(seed);
+    Histogram histogram((GroundLayerConfig()));
+    histogram.addGround(random, 300, 0.03, 0.01);
+    const int ground = histogram.groundBins();
+    histogram.addObject(random, 3000, 0.25, 0.6);
+    EXPECT_EQ(histogram.groundBins(true), ground) << "seed " << seed;
+    EXPECT_GT(histogram.groundBins(false), ground) << "seed " << seed;
+  }
+}
+
+TEST(GroundLayer, ASurfaceStandsOutAndTheLowerEndOfAnObjectDoesNot) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Random random(seed);
+    Histogram object((GroundLayerConfig())), both((GroundLayerConfig()));
+    object.addObject(random, random.integer(100, 2000), 0.0, 1.7);
+    EXPECT_FALSE(object.standsOut()) << "seed " << seed;
+    both.addObject(random, 500, 0.0, 1.7);
+    both.addGround(random, 400, 0.05, 0.01);
+    EXPECT_TRUE(both.standsOut()) << "seed " << seed;
+  }
+}
+
 TEST(GroundLayer, BinsAreCountedFromBelowTheCoarseGround) {
   int decided = 0;
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
@@ -139,7 +170,7 @@ TEST(GroundLayer, BinsAreCountedFromBelowTheCoarseGround) {
     config.bin_height = random.uniform(0.01, 0.5);
     config.search_height = random.uniform(0.05, 2.0);
     config.max_thickness = random.uniform(0.01, 1.0);
-    const GroundLayer layer(config);
+    const GroundLayer layer(config, kCell);
     ASSERT_GE(layer.bins(), 1);
     for (int i = 0; i < 500; ++i) {
       const auto height = static_cast<float>(random.uniform(-0.5, 4.0));
@@ -155,7 +186,7 @@ TEST(GroundLayer, BinsAreCountedFromBelowTheCoarseGround) {
 }
 
 TEST(GroundLayer, NoHeightIsOutsideTheRangeOfBins) {
-  const GroundLayer layer((GroundLayerConfig()));
+  const GroundLayer layer(GroundLayerConfig(), kCell);
   constexpr float kHuge = std::numeric_limits<float>::max();
   EXPECT_EQ(layer.binOf(-0.11F), -1);
   EXPECT_EQ(layer.binOf(-1e9F), -1);
@@ -178,15 +209,19 @@ struct WholeBins {
     config.search_height = search * config.bin_height;
     config.max_thickness = thickness * config.bin_height;
     config.tail_share = random.pick<double>({0.0, 0.1, 0.25, 0.5, 1.0});
+    config.min_low_peak = random.pick<double>({0.0, 0.25, 0.5, 1.0});
   }
 
   int bins() const { return below + search + thickness; }
 
-  int groundBins(const std::uint32_t* counts) const {
-    int peak = 0;
+  int groundBins(const std::uint32_t* counts, bool object_above) const {
+    int peak = 0, low_peak = 0;
     for (int i = 1; i < below + search; ++i) {
       if (counts[i] > counts[peak]) peak = i;
+      const bool in_cell = i < static_cast<int>(std::lround((kCell - kBottom) / config.bin_height));
+      if (in_cell && counts[i] > counts[low_peak]) low_peak = i;
     }
+    if (object_above && counts[low_peak] >= config.min_low_peak * counts[peak]) peak = low_peak;
     if (counts[peak] == 0) return 0;
     int ground = 0;
     for (int i = 0; i < bins(); ++i) {
@@ -212,33 +247,54 @@ TEST(GroundLayer, AgreesWithPlainLoopsOnRandomCounts) {
   for (std::uint32_t seed = 0; seed < 3000; ++seed) {
     Random random(seed);
     const WholeBins whole(random);
-    const GroundLayer layer(whole.config);
+    const GroundLayer layer(whole.config, kCell);
     ASSERT_EQ(layer.bins(), whole.bins());
     // Exactly as many as there are bins: reading beyond them is an error that sanitizers see.
     std::vector<std::uint32_t> counts(static_cast<std::size_t>(layer.bins()));
     for (std::uint32_t& count : counts) count = randomCount(random);
-    ASSERT_EQ(layer.groundBins(counts.data()), whole.groundBins(counts.data())) << "seed " << seed;
+    for (const bool object_above : {false, true}) {
+      ASSERT_EQ(layer.groundBins(counts.data(), object_above),
+                whole.groundBins(counts.data(), object_above))
+          << "seed " << seed;
+    }
   }
 }
 
 TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   Random random(7);
   const WholeBins whole(random);
-  const GroundLayer layer(whole.config);
+  const GroundLayer layer(whole.config, kCell);
   TileMap map(layer.bins());
   for (const ColumnIndex tile : {ColumnIndex{0, 0}, ColumnIndex{-3, 5}}) {
     for (std::uint32_t& count : map.tileAt(tile).fine_counts) count = randomCount(random);
   }
-  map.forEachTile([&](ColumnIndex, Tile& tile) { findGroundLayers(tile, layer); });
-  int tiles = 0;
+  constexpr int kGroundBit = 8;
+  map.forEachTile([&](ColumnIndex, Tile& tile) {
+    tile.evidence.resize(Tile::kColumns);
+    for (std::size_t i = 0; i < tile.dynamic.size(); ++i) {
+      tile.dynamic[i] = random.chance(0.5) ? Bits{1} << (kGroundBit + 1) : 0;
+      tile.evidence[i].observe(Bits{1} << kGroundBit, 0);
+      for (int free = random.integer(0, 3); free > 0; --free) {
+        tile.evidence[i].observe(0, Bits{1} << kGroundBit);
+      }
+    }
+    findGroundLayers(tile, layer, kGroundBit, EvidenceConfig());
+  });
+  int tiles = 0, objects = 0;
   map.forEachTile([&](ColumnIndex, const Tile& tile) {
     ++tiles;
     for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
       const std::size_t first = i * static_cast<std::size_t>(layer.bins());
-      ASSERT_EQ(tile.static_bins[i], whole.groundBins(tile.fine_counts.data() + first));
+      const std::uint32_t* counts = tile.fine_counts.data() + first;
+      const bool object_above = tile.dynamic[i] != 0;
+      const bool object =
+          object_above && tile.evidence[i].freeAfter(kGroundBit) > 1 && !layer.standsOut(counts);
+      ASSERT_EQ(tile.static_bins[i], object ? 0 : whole.groundBins(counts, object_above));
+      objects += object ? 1 : 0;
     }
   });
   EXPECT_EQ(tiles, 2);
+  EXPECT_GT(objects, 50);
 }
 
 }  // namespace
