@@ -4,52 +4,121 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace beautymap {
 namespace {
 
-constexpr float kNothing = std::numeric_limits<float>::infinity();
 // Nearer columns span so much of the view that a beam image says little about them.
 constexpr float kNearestColumn = 0.5F;  // [m]
 
 /// Where one column of the map stands in the beam image.
 struct ColumnView {
-  float distance;     ///< horizontal, of its centre [m]
   int first_azimuth;  ///< pixel, not yet wrapped
   int last_azimuth;
-};
+  BeamImage::Pixel behind;  ///< greater pixels have beams that passed the column
+  float bottom_slope;       ///< of bit 0, in pixels
+  float bit_slopes;         ///< height of a bit in pixels
 
-/// The beams in a rectangle of pixels that passed beyond a distance, and all of them.
-struct BeamCount {
-  int passed = 0;
-  int all = 0;
-};
-
-BeamCount countBeams(const BeamImage& beams, const ColumnView& view, int first_slope,
-                     int last_slope, float behind) {
-  BeamCount count;
-  for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
-    const int azimuth = u < 0                        ? u + beams.azimuthPixels()
-                        : u >= beams.azimuthPixels() ? u - beams.azimuthPixels()
-                                                     : u;
-    const std::uint16_t* counts = beams.counts(azimuth);
-    const float* nearest = beams.nearest(azimuth);
-    for (int v = first_slope; v <= last_slope; ++v) {
-      count.all += counts[v];
-      count.passed += nearest[v] > behind ? counts[v] : 0;
-    }
+  int firstSlope(int bit) const {
+    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes);
   }
-  return count;
-}
+  int lastSlope(int bit) const { return firstSlope(bit + 1); }
+};
 
-ColumnView viewColumn(const BeamImage& beams, float x, float y, float distance, float res_g) {
+ColumnView viewColumn(const BeamImage& beams, float x, float y, float distance, float bottom,
+                      const MatrixConfig& matrix, float margin) {
+  const float res_g = static_cast<float>(matrix.res_g);
+  const float per_metre = 1.0F / distance;
   // The directions to the ends of the column's width, seen from the sensor.
-  const float half = 0.5F * res_g / distance;
+  const float half = 0.5F * res_g * per_metre;
   const float first = beams.azimuthPixel(x + half * y, y - half * x);
   float last = beams.azimuthPixel(x - half * y, y + half * x);
   if (last < first) last += static_cast<float>(beams.azimuthPixels());
-  return {distance, floorToInt(first), floorToInt(last)};
+  const float bottom_slope = beams.slopePixel(bottom * per_metre);
+  const float top_slope = beams.slopePixel((bottom + static_cast<float>(matrix.res_h)) * per_metre);
+  return {floorToInt(first), floorToInt(last),
+          BeamImage::limitFor(distance + 0.5F * res_g + margin), bottom_slope,
+          top_slope - bottom_slope};
+}
+
+int wrapped(int azimuth, int pixels) {
+  return azimuth < 0 ? azimuth + pixels : azimuth >= pixels ? azimuth - pixels : azimuth;
+}
+
+bool anyBeamPassed(const BeamImage& beams, const ColumnView& view) {
+  for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
+    if (beams.farthest(wrapped(u, beams.azimuthPixels())) > view.behind) return true;
+  }
+  return false;
+}
+
+/// The candidates of a column whose slopes the image has beams of.
+Bits inImage(Bits candidates, const BeamImage& beams, const ColumnView& view) {
+  const float lowest =
+      (static_cast<float>(beams.firstSlope()) - view.bottom_slope) / view.bit_slopes;
+  const float end =
+      (static_cast<float>(beams.lastSlope() + 1) - view.bottom_slope) / view.bit_slopes;
+  constexpr auto kEnd = static_cast<float>(kMaxBits);
+  // One bit more to each side: what rounding adds has no beams and is not seen free anyway.
+  const int first = static_cast<int>(std::clamp(lowest - 1.0F, 0.0F, kEnd));
+  const int last = static_cast<int>(std::clamp(end + 1.0F, 0.0F, kEnd));
+  return candidates & lowBits(last) & ~lowBits(first);
+}
+
+/// The beams in the azimuths of a column, summed by slope: those that passed it, and all of them.
+class BeamSums {
+ public:
+  void sum(const BeamImage& beams, const ColumnView& view, int first_slope, int last_slope) {
+    first_slope_ = first_slope;
+    const auto size = static_cast<std::size_t>(last_slope - first_slope + 1);
+    all_.assign(size, 0);
+    passed_.assign(size, 0);
+    BeamImage::Pixel* all = all_.data();
+    BeamImage::Pixel* passed = passed_.data();
+    const BeamImage::Pixel behind = view.behind;
+    for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
+      const BeamImage::Pixel* row = beams.row(wrapped(u, beams.azimuthPixels())) + first_slope;
+      for (std::size_t v = 0; v < size; ++v) {
+        const BeamImage::Pixel count = BeamImage::countOf(row[v]);
+        all[v] += count;
+        passed[v] += row[v] > behind ? count : 0;
+      }
+    }
+  }
+
+  bool seesFree(int first_slope, int last_slope, const VisibilityConfig& config) const {
+    int all = 0, passed = 0;
+    for (int v = first_slope - first_slope_; v <= last_slope - first_slope_; ++v) {
+      all += all_[static_cast<std::size_t>(v)];
+      passed += passed_[static_cast<std::size_t>(v)];
+    }
+    return passed >= config.min_beams && passed >= config.min_share * all;
+  }
+
+ private:
+  int first_slope_ = 0;
+  std::vector<BeamImage::Pixel> all_;
+  std::vector<BeamImage::Pixel> passed_;
+};
+
+Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
+              const VisibilityConfig& config, BeamSums& sums) {
+  // Cells that reach out of the image's slopes are not judged.
+  while (candidates != 0 && view.firstSlope(lowestBitIndex(candidates)) < 0) {
+    candidates &= candidates - 1;
+  }
+  while (candidates != 0 && view.lastSlope(highestBitIndex(candidates)) >= beams.slopePixels()) {
+    candidates &= ~(Bits{1} << highestBitIndex(candidates));
+  }
+  if (candidates == 0) return 0;
+  sums.sum(beams, view, view.firstSlope(lowestBitIndex(candidates)),
+           view.lastSlope(highestBitIndex(candidates)));
+  Bits free = 0;
+  for (Bits rest = candidates; rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    if (sums.seesFree(view.firstSlope(bit), view.lastSlope(bit), config)) free |= lowestBit(rest);
+  }
+  return free;
 }
 
 }  // namespace
@@ -61,10 +130,11 @@ BeamImage::BeamImage(const VisibilityConfig& config)
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
   slope_scale_ = static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0));
   slope_pixels_ = static_cast<int>((kMaxSlope - kMinSlope) * slope_scale_) + 1;
-  const auto pixels =
-      static_cast<std::size_t>(azimuth_pixels_) * static_cast<std::size_t>(slope_pixels_);
-  counts_.assign(pixels, 0);
-  nearest_.assign(pixels, kNothing);
+  pixels_.assign(
+      static_cast<std::size_t>(azimuth_pixels_) * static_cast<std::size_t>(slope_pixels_), kEmpty);
+  farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
+  first_slope_ = slope_pixels_;
+  last_slope_ = -1;
 }
 
 float BeamImage::azimuthPixel(float x, float y) const {
@@ -75,11 +145,11 @@ float BeamImage::azimuthPixel(float x, float y) const {
 }
 
 void BeamImage::fill(const PlacedScan& scan) {
-  for (const std::uint32_t pixel : used_) {
-    counts_[pixel] = 0;
-    nearest_[pixel] = kNothing;
-  }
+  for (const std::uint32_t pixel : used_) pixels_[pixel] = kEmpty;
   used_.clear();
+  std::fill(farthest_.begin(), farthest_.end(), 0);
+  first_slope_ = slope_pixels_;
+  last_slope_ = -1;
   for (const Eigen::Vector3f& point : scan.points) {
     const Eigen::Vector3f ray = point - scan.sensor;
     const float distance = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
@@ -87,10 +157,16 @@ void BeamImage::fill(const PlacedScan& scan) {
     const int v = floorToInt(slopePixel(std::clamp(ray.z() / distance, -2.0F, 2.0F)));
     if (v < 0 || v >= slope_pixels_) continue;
     const int u = std::min(static_cast<int>(azimuthPixel(ray.x(), ray.y())), azimuth_pixels_ - 1);
-    const auto pixel = static_cast<std::uint32_t>(u * slope_pixels_ + v);
-    if (counts_[pixel] == 0) used_.push_back(pixel);
-    if (counts_[pixel] < std::numeric_limits<std::uint16_t>::max()) ++counts_[pixel];
-    nearest_[pixel] = std::min(nearest_[pixel], distance);
+    const auto index = static_cast<std::uint32_t>(u * slope_pixels_ + v);
+    Pixel& pixel = pixels_[index];
+    const Pixel count = countOf(pixel);
+    if (count == 0) used_.push_back(index);
+    const Pixel beam = limitFor(distance) & ~kMaxCount;
+    pixel = std::min(pixel & ~kMaxCount, beam) | std::min(count + 1, kMaxCount);
+    Pixel& farthest = farthest_[static_cast<std::size_t>(u)];
+    farthest = std::max(farthest, beam | 1);
+    first_slope_ = std::min(first_slope_, v);
+    last_slope_ = std::max(last_slope_, v);
   }
 }
 
@@ -99,9 +175,9 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
                       const VisibilityConfig& config) {
   const ColumnWindow& window = candidates.window();
   const float res_g = static_cast<float>(matrix.res_g);
-  const float res_h = static_cast<float>(matrix.res_h);
   const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
   BitGrid seen_free(window, 0);
+  BeamSums sums;
   for (int x = 0; x < window.size; ++x) {
     const float dx =
         (static_cast<float>(window.corner.x - scan.anchor.x + x) + 0.5F) * res_g - scan.sensor.x();
@@ -111,20 +187,11 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
                        scan.sensor.y();
       const float distance = std::sqrt(dx * dx + dy * dy);
       if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const ColumnView view = viewColumn(beams, dx, dy, distance, res_g);
-      const float behind = distance + 0.5F * res_g + static_cast<float>(config.margin);
-      const float base = ground.at(x, y) - scan.sensor.z();
-      for (Bits rest = candidates.at(x, y); rest != 0; rest &= rest - 1) {
-        const int bit = lowestBitIndex(rest);
-        const float bottom = base + static_cast<float>(bit) * res_h;
-        const int first = floorToInt(beams.slopePixel(bottom / distance));
-        const int last = floorToInt(beams.slopePixel((bottom + res_h) / distance));
-        if (first < 0 || last >= beams.slopePixels()) continue;
-        const BeamCount count = countBeams(beams, view, first, last, behind);
-        if (count.passed >= config.min_beams && count.passed >= config.min_share * count.all) {
-          seen_free.at(x, y) |= lowestBit(rest);
-        }
-      }
+      const ColumnView view = viewColumn(beams, dx, dy, distance, ground.at(x, y) - scan.sensor.z(),
+                                         matrix, static_cast<float>(config.margin));
+      const Bits judged = inImage(candidates.at(x, y), beams, view);
+      if (judged == 0 || !anyBeamPassed(beams, view)) continue;
+      seen_free.at(x, y) = seenFree(judged, beams, view, config, sums);
     }
   }
   return seen_free;

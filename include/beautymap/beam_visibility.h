@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,15 @@ namespace beautymap {
 /// directions without a return are unknown.
 class BeamImage {
  public:
+  /// One pixel in one word, so that a point touches one cache line: the nearest horizontal distance
+  /// at which a beam ended [mm] above its lowest byte, which counts the beams up to 255.
+  using Pixel = std::int32_t;
+  static Pixel countOf(Pixel pixel) { return pixel & kMaxCount; }
+  /// A pixel is greater than this if all its beams ended farther away.
+  static Pixel limitFor(float distance_m) {
+    return static_cast<Pixel>(std::min(distance_m, kFarthest) * 1000.0F) << kCountBits | kMaxCount;
+  }
+
   explicit BeamImage(const VisibilityConfig& config);
 
   /// Replaces the contents by the beams of a scan.
@@ -26,27 +36,36 @@ class BeamImage {
   /// trigonometry.
   float azimuthPixel(float x, float y) const;
   float slopePixel(float slope) const { return (slope - kMinSlope) * slope_scale_; }
+  /// Its inverse.
+  float slopeAt(float pixel) const { return pixel / slope_scale_ + kMinSlope; }
   int azimuthPixels() const { return azimuth_pixels_; }
   int slopePixels() const { return slope_pixels_; }
 
-  /// The pixels of one azimuth: counts of beams, and the nearest horizontal distance at which one
-  /// ended [m].
-  const std::uint16_t* counts(int azimuth) const { return counts_.data() + rowOf(azimuth); }
-  const float* nearest(int azimuth) const { return nearest_.data() + rowOf(azimuth); }
+  /// The pixels of one azimuth, by slope.
+  const Pixel* row(int azimuth) const {
+    return pixels_.data() + static_cast<std::ptrdiff_t>(azimuth) * slope_pixels_;
+  }
+  /// The farthest beam of one azimuth, as a pixel.
+  Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
+  /// The lowest and highest pixel of slope that any beam has; first > last without beams.
+  int firstSlope() const { return first_slope_; }
+  int lastSlope() const { return last_slope_; }
 
  private:
-  std::ptrdiff_t rowOf(int azimuth) const {
-    return static_cast<std::ptrdiff_t>(azimuth) * slope_pixels_;
-  }
-
+  static constexpr int kCountBits = 8;
+  static constexpr Pixel kMaxCount = (1 << kCountBits) - 1;
+  static constexpr float kFarthest = 8000.0F;  // [m]
+  static constexpr Pixel kEmpty = 0x7FFFFF00;  // farther than any beam, and none
   static constexpr float kMinSlope = -1.5F;
   static constexpr float kMaxSlope = 1.5F;
 
   int azimuth_pixels_;
   int slope_pixels_;
   float slope_scale_;
-  std::vector<std::uint16_t> counts_;
-  std::vector<float> nearest_;
+  int first_slope_;
+  int last_slope_;
+  std::vector<Pixel> pixels_;
+  std::vector<Pixel> farthest_;
   std::vector<std::uint32_t> used_;  ///< pixels with beams: only these are cleared
 };
 

@@ -59,7 +59,7 @@ TEST(BeamImage, ADirectionJustBelowTheFirstLiesInAPixel) {
   beams.fill(test::placedScan({0, 0}, {0, 0, 0}, {{20.0, -1e-9, 0.0}, {20.0, 1e-9, 0.0}}));
   int all = 0;
   for (const int u : {0, beams.azimuthPixels() - 1}) {
-    for (int v = 0; v < beams.slopePixels(); ++v) all += beams.counts(u)[v];
+    for (int v = 0; v < beams.slopePixels(); ++v) all += BeamImage::countOf(beams.row(u)[v]);
   }
   EXPECT_EQ(all, 2);
 }
@@ -69,9 +69,9 @@ void expectEqual(const BeamImage& a, const BeamImage& b) {
   ASSERT_EQ(a.slopePixels(), b.slopePixels());
   for (int u = 0; u < a.azimuthPixels(); ++u) {
     for (int v = 0; v < a.slopePixels(); ++v) {
-      ASSERT_EQ(a.counts(u)[v], b.counts(u)[v]) << u << ", " << v;
-      ASSERT_EQ(a.nearest(u)[v], b.nearest(u)[v]) << u << ", " << v;
+      ASSERT_EQ(a.row(u)[v], b.row(u)[v]) << u << ", " << v;
     }
+    ASSERT_EQ(a.farthest(u), b.farthest(u));
   }
 }
 
@@ -104,8 +104,14 @@ TEST(BeamImage, APixelHoldsItsBeamsAndTheNearestReturn) {
       {8, 0.01, 0}, {4, 0.005, 0}, {16, 0.02, 0}, {0.3, 0, 0}};
   beams.fill(test::placedScan({0, 0}, {0, 0, 0}, points));
   const int v = floorToInt(beams.slopePixel(0.0F));
-  EXPECT_EQ(beams.counts(0)[v], 3);
-  EXPECT_FLOAT_EQ(beams.nearest(0)[v], std::hypot(4.0F, 0.005F));
+  const BeamImage::Pixel pixel = beams.row(0)[v];
+  EXPECT_EQ(BeamImage::countOf(pixel), 3);
+  EXPECT_GT(pixel, BeamImage::limitFor(3.998F));
+  EXPECT_LT(pixel, BeamImage::limitFor(4.002F));
+  EXPECT_GT(beams.farthest(0), BeamImage::limitFor(15.998F));
+  EXPECT_LT(beams.farthest(0), BeamImage::limitFor(16.002F));
+  EXPECT_EQ(beams.firstSlope(), v);
+  EXPECT_EQ(beams.lastSlope(), v);
 }
 
 /// A sensor in the middle of its column, so that the columns along x are at multiples of half a
@@ -403,7 +409,8 @@ std::optional<bool> seenFree(const Case& c, int x, int y, int bit) {
   const double behind = distance + 0.5 * c.matrix.res_g + c.config.margin;
   int passed = 0, all = 0;
   for (const auto& [position, pixel] : pixels) {
-    if (std::abs(pixel.nearest - behind) < kRounding) return std::nullopt;
+    // Distances are whole millimetres.
+    if (std::abs(pixel.nearest - behind) < 0.001 + kRounding) return std::nullopt;
     all += pixel.beams;
     if (pixel.nearest > behind) passed += pixel.beams;
   }
