@@ -264,9 +264,13 @@ void OfflineRun::writeScan(const ReadScan& read) {
 }
 
 void OfflineRun::scoreAgainst(const std::string& cleaned) {
+  evaluator_.finishTruth();
+  std::vector<Eigen::Vector3d> points;
   readPcdBlocks(cleaned, [&](const pcl::PCLPointCloud2& block) {
     const PositionReader position(block);
-    for (std::size_t i = 0; i < block.width; ++i) evaluator_.showCleaned(position(i));
+    points.resize(block.width);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = position(i);
+    evaluator_.showCleaned(points);
   });
   report_.score = evaluator_.score();
 }

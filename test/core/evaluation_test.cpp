@@ -38,7 +38,8 @@ Score evaluate(const std::vector<Labelled>& truth, const std::vector<Eigen::Vect
                double radius) {
   Evaluator evaluator(radius);
   for (const Labelled& t : truth) evaluator.addUnmatched(t.point, t.moving);
-  for (const Eigen::Vector3d& c : cleaned) evaluator.showCleaned(c);
+  evaluator.finishTruth();
+  evaluator.showCleaned(cleaned);
   return evaluator.score();
 }
 
@@ -91,7 +92,8 @@ TEST(Evaluation, WhatTheCleanedMapHoldsItselfIsKept) {
   evaluator.addKept(true);
   evaluator.addUnmatched({0, 0, 0}, true);
   evaluator.addUnmatched({9, 0, 0}, false);
-  evaluator.showCleaned({0.04, 0, 0});
+  evaluator.finishTruth();
+  evaluator.showCleaned({{0.04, 0, 0}});
   expectEqual(evaluator.score(), {4, 2, 3, 2});
 }
 
