@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 namespace beautymap {
 namespace {
@@ -16,9 +17,11 @@ constexpr double kCellRadii = 2.0;
 // Neighbouring cells share a cube of 8 x 8 x 8, to be near each other in memory, too.
 constexpr int kCubeShift = 3;
 constexpr std::size_t kShelves = 256;
-// Cubes that share these bits cost time, not correctness: 4 MB.
-constexpr std::size_t kNearCubes = std::size_t{1} << 16;
-constexpr std::size_t kMinCapacity = 1024;
+// 128 KB and 4 MB.
+constexpr std::size_t kCubeWords = std::size_t{1} << 14;
+constexpr std::size_t kCubeLines = std::size_t{1} << 16;
+// Of a shelf; equal points are first merged when it is full.
+constexpr std::size_t kMinCapacity = 4096;
 
 /// std::floor is a function call without SSE4.1. Beyond what a double counts exactly, and for what
 /// is not a number, the result is the limit.
@@ -48,10 +51,6 @@ std::uint64_t hashOf(std::uint64_t key) {
 }
 
 std::uint64_t hashOfCube(std::uint64_t cell) { return hashOf(cell >> (3 * kCubeShift)); }
-
-std::size_t nearPlace(std::uint64_t cell) { return hashOfCube(cell) % kNearCubes; }
-std::size_t nearWord(std::uint64_t cell) { return cell >> 6 & 7; }
-unsigned nearBit(std::uint64_t cell) { return static_cast<unsigned>(cell & 63); }
 
 double percent(std::uint64_t part, std::uint64_t all) {
   return all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
@@ -84,50 +83,57 @@ void Evaluator::addUnmatched(const Eigen::Vector3d& point, bool moving) {
 }
 
 void Evaluator::finishTruth() {
-  near_.assign(kNearCubes, {});
   for (Shelf& shelf : shelves_) {
     shelf.finish();
-    for (const Unmatched& unmatched : shelf.points()) markNear(unmatched.point);
+    for (const Unmatched& unmatched : shelf.points()) {
+      occupied_.insert(unmatched.cell);
+      forEachCellInReach(unmatched.point, [&](std::uint64_t cell) { near_.insert(cell); });
+    }
   }
 }
 
 void Evaluator::showCleaned(const std::vector<Eigen::Vector3d>& points) {
-  // The time goes into waiting for memory. So each loop asks for what the next one needs, and does
-  // not branch on an answer that is hard to predict.
+  // The time goes into waiting for memory. So each loop asks for what the next one needs, and those
+  // that many points come to do not branch on an answer that is hard to predict.
   struct Lookup {
-    Shelf* shelf;
-    std::uint64_t cell;
     std::size_t point;
+    std::uint64_t cell;
   };
   struct Match {
+    std::size_t point;
     Shelf* shelf;
     Shelf::Run run;
-    std::size_t point;
   };
   constexpr std::size_t kBlock = 256;
-  std::array<std::size_t, kBlock> found;
+  std::array<Lookup, kBlock> found;
   std::vector<Lookup> lookups;
   std::vector<Match> matches;
   for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < std::min(points.size(), begin + kBlock); ++i) {
-      const std::uint64_t cell = cellOf(points[i]);
-      found[count] = i;
-      count += near_[nearPlace(cell)].words[nearWord(cell)] >> nearBit(cell) & 1;
+      found[count] = {i, cellOf(points[i])};
+      count += static_cast<std::size_t>(near_.mayHoldCube(found[count].cell));
+    }
+    const std::size_t in_near_cubes = std::exchange(count, 0);
+    for (std::size_t i = 0; i < in_near_cubes; ++i) {
+      found[count] = found[i];
+      count += static_cast<std::size_t>(near_.mayHold(found[i].cell));
     }
     lookups.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      forEachCellInReach(points[found[i]], [&](std::uint64_t cell) {
-        lookups.push_back({&shelfOf(cell), cell, found[i]});
-        __builtin_prefetch(lookups.back().shelf->firstPlace(cell));
+      forEachCellInReach(points[found[i].point], [&](std::uint64_t cell) {
+        if (!occupied_.mayHold(cell)) return;
+        lookups.push_back({found[i].point, cell});
+        __builtin_prefetch(shelfOf(cell).firstPlace(cell));
       });
     }
     matches.clear();
     for (const Lookup& lookup : lookups) {
-      const Shelf::Run& run = lookup.shelf->find(lookup.cell);
+      Shelf& shelf = shelfOf(lookup.cell);
+      const Shelf::Run& run = shelf.find(lookup.cell);
       if (run.begin == run.end) continue;
-      matches.push_back({lookup.shelf, run, lookup.point});
-      __builtin_prefetch(&lookup.shelf->points()[run.begin]);
+      matches.push_back({lookup.point, &shelf, run});
+      __builtin_prefetch(&shelf.points()[run.begin]);
     }
     for (const Match& m : matches) m.shelf->match(m.run, points[m.point], radius_m_);
   }
@@ -141,12 +147,6 @@ Score Evaluator::score() const {
 
 Evaluator::Shelf& Evaluator::shelfOf(std::uint64_t cell) {
   return shelves_[(hashOfCube(cell) >> 32) % kShelves];
-}
-
-void Evaluator::markNear(const Eigen::Vector3d& point) {
-  forEachCellInReach(point, [&](std::uint64_t cell) {
-    near_[nearPlace(cell)].words[nearWord(cell)] |= std::uint64_t{1} << nearBit(cell);
-  });
 }
 
 std::uint64_t Evaluator::cellOf(const Eigen::Vector3d& point) const {
@@ -241,6 +241,23 @@ void Evaluator::Shelf::addKeptTo(Score& score) const {
     score.kept_static += points_[i].static_count;
     score.kept_dynamic += points_[i].moving_count;
   }
+}
+
+Evaluator::CellSet::CellSet() : cubes_(kCubeWords), lines_(kCubeLines) {}
+
+void Evaluator::CellSet::insert(std::uint64_t cell) {
+  const std::uint64_t hash = hashOfCube(cell);
+  cubes_[hash % kCubeWords] |= std::uint64_t{1} << (hash >> 58);
+  lines_[hash % kCubeLines].words[cell >> 6 & 7] |= std::uint64_t{1} << (cell & 63);
+}
+
+bool Evaluator::CellSet::mayHoldCube(std::uint64_t cell) const {
+  const std::uint64_t hash = hashOfCube(cell);
+  return (cubes_[hash % kCubeWords] >> (hash >> 58) & 1) != 0;
+}
+
+bool Evaluator::CellSet::mayHold(std::uint64_t cell) const {
+  return (lines_[hashOfCube(cell) % kCubeLines].words[cell >> 6 & 7] >> (cell & 63) & 1) != 0;
 }
 
 }  // namespace beautymap

@@ -82,13 +82,26 @@ class Evaluator {
     std::vector<Run> runs_;   ///< hashed
     std::vector<std::atomic<bool>> kept_;
   };
-  /// One bit for each cell of a cube: a cache line.
-  struct alignas(64) CubeBits {
-    std::array<std::uint64_t, 8> words{};
+  /// A set of cells that tells at once what it does not hold; cubes that share a line of bits may
+  /// make it hold more.
+  class CellSet {
+   public:
+    CellSet();
+    void insert(std::uint64_t cell);
+    /// Whether a cell of the same cube may be in it; the answer is mostly in a near cache.
+    bool mayHoldCube(std::uint64_t cell) const;
+    bool mayHold(std::uint64_t cell) const;
+
+   private:
+    /// The cells of a cube, in one cache line.
+    struct alignas(64) Line {
+      std::array<std::uint64_t, 8> words{};
+    };
+    std::vector<std::uint64_t> cubes_;
+    std::vector<Line> lines_;
   };
 
   Shelf& shelfOf(std::uint64_t cell);
-  void markNear(const Eigen::Vector3d& point);
   std::uint64_t cellOf(const Eigen::Vector3d& point) const;
   template <typename F>
   void forEachCellInReach(const Eigen::Vector3d& point, F f) const;
@@ -97,7 +110,8 @@ class Evaluator {
   double cells_per_m_;
   Score known_;  ///< all points, and those that are kept without a search
   std::vector<Shelf> shelves_;
-  std::vector<CubeBits> near_;  ///< hashed cubes: cells within the radius of an unmatched point
+  CellSet near_;      ///< cells within the radius of an unmatched point
+  CellSet occupied_;  ///< cells with unmatched points
 };
 
 }  // namespace beautymap
