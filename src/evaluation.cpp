@@ -21,7 +21,7 @@ constexpr std::size_t kShelves = 256;
 constexpr std::size_t kCubeWords = std::size_t{1} << 14;
 constexpr std::size_t kCubeLines = std::size_t{1} << 16;
 // Of a shelf; equal points are first merged when it is full.
-constexpr std::size_t kMinCapacity = 4096;
+constexpr std::size_t kMinCapacity = 2048;
 
 /// std::floor is a function call without SSE4.1. Beyond what a double counts exactly, and for what
 /// is not a number, the result is the limit.
@@ -169,8 +169,8 @@ void Evaluator::Shelf::add(const Unmatched& unmatched) {
   if (points_.size() == points_.capacity()) {
     // The same scan may come more than once: it must not take more memory.
     mergeEqual();
-    if (merged_ >= points_.capacity() / 4 * 3) {
-      points_.reserve(std::max(kMinCapacity, merged_ / 2 * 3));
+    if (merged_ >= points_.capacity() / 8 * 7) {
+      points_.reserve(std::max(kMinCapacity, merged_ / 4 * 5));
     }
   }
   points_.push_back(unmatched);
