@@ -4,32 +4,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 namespace beautymap {
 namespace {
 
 // A cell of twice the radius: whatever lies within the radius is in at most two cells an axis.
 constexpr double kCellRadii = 2.0;
-// Coarse cells that only answer "nothing near here", as most points of a cleaned map are far from
-// what was removed.
-constexpr double kCoarseRadii = 4.0;
-constexpr std::size_t kCoarseBits = std::size_t{1} << 25;
+// Neighbouring cells share a cube of 8 x 8 x 8, to be near each other in memory, too.
+constexpr int kCubeShift = 3;
+constexpr std::size_t kShelves = 256;
+// 128 KB and 4 MB.
+constexpr std::size_t kCubeWords = std::size_t{1} << 14;
+constexpr std::size_t kCubeLines = std::size_t{1} << 16;
+// Of a shelf; equal points are first merged when it is full.
+constexpr std::size_t kMinCapacity = 2048;
 
-// Beyond it, cell numbers would not fit; no map reaches that far.
-constexpr double kMaxCoordinate = 1e9;  // [m]
-
-bool isUsable(const Eigen::Vector3d& point) {
-  return point.cwiseAbs().maxCoeff() <= kMaxCoordinate && point.allFinite();
+/// std::floor is a function call without SSE4.1. Beyond what a double counts exactly, and for what
+/// is not a number, the result is the limit.
+std::int64_t floorToInt64(double value) {
+  constexpr double kLimit = 9007199254740992.0;
+  const double bounded = std::max(-kLimit, std::min(kLimit, value));
+  const auto truncated = static_cast<std::int64_t>(bounded);
+  return truncated - static_cast<std::int64_t>(static_cast<double>(truncated) > bounded);
 }
 
-std::uint64_t hashCell(std::int64_t x, std::int64_t y, std::int64_t z) {
-  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ULL;
-  h = (h ^ (h >> 29) ^ static_cast<std::uint64_t>(y)) * 0xBF58476D1CE4E5B9ULL;
-  h = (h ^ (h >> 32) ^ static_cast<std::uint64_t>(z)) * 0x94D049BB133111EBULL;
-  return h ^ (h >> 31);
+/// A key of 18 bits an axis for the cube, and below it 3 bits an axis for the cell in the cube:
+/// cells above each other follow each other. Cells so far apart that they share a key add
+/// candidates only.
+std::uint64_t cellKey(std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto bits = [](std::int64_t value, int count) {
+    return static_cast<std::uint64_t>(value) & ((std::uint64_t{1} << count) - 1);
+  };
+  const std::uint64_t cube =
+      bits(x >> kCubeShift, 18) << 36 | bits(y >> kCubeShift, 18) << 18 | bits(z >> kCubeShift, 18);
+  return cube << (3 * kCubeShift) | bits(x, kCubeShift) << 6 | bits(y, kCubeShift) << 3 |
+         bits(z, kCubeShift);
 }
+
+std::uint64_t hashOf(std::uint64_t key) {
+  key = (key ^ (key >> 32)) * 0x9E3779B97F4A7C15ULL;
+  return key ^ (key >> 29);
+}
+
+std::uint64_t hashOfCube(std::uint64_t cell) { return hashOf(cell >> (3 * kCubeShift)); }
 
 double percent(std::uint64_t part, std::uint64_t all) {
   return all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
@@ -42,93 +63,201 @@ double Score::DA() const { return percent(dynamic_points - kept_dynamic, dynamic
 double Score::AA() const { return std::sqrt(SA() * DA()); }
 double Score::HA() const { return SA() + DA() > 0.0 ? 2.0 * SA() * DA() / (SA() + DA()) : 0.0; }
 
-Evaluator::Evaluator(double radius_m) : radius_m_(radius_m) {
+Evaluator::Evaluator(double radius_m) : radius_m_(radius_m), shelves_(kShelves) {
   if (!(radius_m >= 1e-6) || !std::isfinite(radius_m)) {
     throw std::invalid_argument("the radius must be a positive number of metres");
   }
-  near_.assign(kCoarseBits, false);
+  cells_per_m_ = 1.0 / (kCellRadii * radius_m);
 }
 
-void Evaluator::addKept(bool moving) {
-  ++(moving ? score_.dynamic_points : score_.static_points);
-  ++(moving ? score_.kept_dynamic : score_.kept_static);
+void Evaluator::addKept(bool moving, std::uint64_t count) {
+  (moving ? known_.dynamic_points : known_.static_points) += count;
+  (moving ? known_.kept_dynamic : known_.kept_static) += count;
 }
 
 void Evaluator::addUnmatched(const Eigen::Vector3d& point, bool moving) {
-  ++(moving ? score_.dynamic_points : score_.static_points);
-  if (!isUsable(point)) return;
-  std::vector<Unmatched>& cell = cells_[cellKey(point)];
-  // The same scan may come more than once: it must not take more memory.
-  auto same =
-      std::find_if(cell.begin(), cell.end(), [&](const Unmatched& u) { return u.point == point; });
-  if (same == cell.end()) {
-    cell.push_back({point, 0, 0});
-    same = cell.end() - 1;
-    markNear(point);
-  }
-  ++(moving ? same->moving_count : same->static_count);
+  ++(moving ? known_.dynamic_points : known_.static_points);
+  if (!point.allFinite()) return;
+  const std::uint64_t cell = cellOf(point);
+  shelfOf(cell).add({cell, point, moving ? 0U : 1U, moving ? 1U : 0U});
 }
 
-void Evaluator::showCleaned(const Eigen::Vector3d& point) {
-  if (!isUsable(point) || !nearUnmatched(point)) return;
-  forEachCellNear(point, kCellRadii * radius_m_,
-                  [&](std::uint64_t key) { matchInCell(key, point); });
-}
-
-void Evaluator::matchInCell(std::uint64_t key, const Eigen::Vector3d& point) {
-  const auto found = cells_.find(key);
-  if (found == cells_.end()) return;
-  std::vector<Unmatched>& cell = found->second;
-  for (std::size_t i = 0; i < cell.size();) {
-    if ((cell[i].point - point).norm() < radius_m_) {
-      score_.kept_static += cell[i].static_count;
-      score_.kept_dynamic += cell[i].moving_count;
-      cell[i] = cell.back();
-      cell.pop_back();
-    } else {
-      ++i;
+void Evaluator::finishTruth() {
+  for (Shelf& shelf : shelves_) {
+    shelf.finish();
+    for (const Unmatched& unmatched : shelf.points()) {
+      occupied_.insert(unmatched.cell);
+      forEachCellInReach(unmatched.point, [&](std::uint64_t cell) { near_.insert(cell); });
     }
   }
-  if (cell.empty()) cells_.erase(found);
 }
 
-std::uint64_t Evaluator::cellKey(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d cell = (point / (kCellRadii * radius_m_)).array().floor();
-  return hashCell(static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                  static_cast<std::int64_t>(cell.z()));
+void Evaluator::showCleaned(const std::vector<Eigen::Vector3d>& points) {
+  // The time goes into waiting for memory. So each loop asks for what the next one needs, and those
+  // that many points come to do not branch on an answer that is hard to predict.
+  struct Lookup {
+    std::size_t point;
+    std::uint64_t cell;
+  };
+  struct Match {
+    std::size_t point;
+    Shelf* shelf;
+    Shelf::Run run;
+  };
+  constexpr std::size_t kBlock = 256;
+  std::array<Lookup, kBlock> found;
+  std::vector<Lookup> lookups;
+  std::vector<Match> matches;
+  for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < std::min(points.size(), begin + kBlock); ++i) {
+      found[count] = {i, cellOf(points[i])};
+      count += static_cast<std::size_t>(near_.mayHoldCube(found[count].cell));
+    }
+    const std::size_t in_near_cubes = std::exchange(count, 0);
+    for (std::size_t i = 0; i < in_near_cubes; ++i) {
+      found[count] = found[i];
+      count += static_cast<std::size_t>(near_.mayHold(found[i].cell));
+    }
+    lookups.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      forEachCellInReach(points[found[i].point], [&](std::uint64_t cell) {
+        if (!occupied_.mayHold(cell)) return;
+        lookups.push_back({found[i].point, cell});
+        __builtin_prefetch(shelfOf(cell).firstPlace(cell));
+      });
+    }
+    matches.clear();
+    for (const Lookup& lookup : lookups) {
+      Shelf& shelf = shelfOf(lookup.cell);
+      const Shelf::Run& run = shelf.find(lookup.cell);
+      if (run.begin == run.end) continue;
+      matches.push_back({lookup.point, &shelf, run});
+      __builtin_prefetch(&shelf.points()[run.begin]);
+    }
+    for (const Match& m : matches) m.shelf->match(m.run, points[m.point], radius_m_);
+  }
+}
+
+Score Evaluator::score() const {
+  Score score = known_;
+  for (const Shelf& shelf : shelves_) shelf.addKeptTo(score);
+  return score;
+}
+
+Evaluator::Shelf& Evaluator::shelfOf(std::uint64_t cell) {
+  return shelves_[(hashOfCube(cell) >> 32) % kShelves];
+}
+
+std::uint64_t Evaluator::cellOf(const Eigen::Vector3d& point) const {
+  return cellKey(floorToInt64(point.x() * cells_per_m_), floorToInt64(point.y() * cells_per_m_),
+                 floorToInt64(point.z() * cells_per_m_));
 }
 
 template <typename F>
-void Evaluator::forEachCellNear(const Eigen::Vector3d& point, double cell_m, F f) const {
-  const Eigen::Array3d low = ((point.array() - radius_m_) / cell_m).floor();
-  const Eigen::Array3d high = ((point.array() + radius_m_) / cell_m).floor();
-  for (auto x = static_cast<std::int64_t>(low.x()); x <= static_cast<std::int64_t>(high.x()); ++x) {
-    for (auto y = static_cast<std::int64_t>(low.y()); y <= static_cast<std::int64_t>(high.y());
-         ++y) {
-      for (auto z = static_cast<std::int64_t>(low.z()); z <= static_cast<std::int64_t>(high.z());
-           ++z) {
-        f(hashCell(x, y, z));
-      }
+void Evaluator::forEachCellInReach(const Eigen::Vector3d& point, F f) const {
+  const auto low = [&](double value) { return floorToInt64((value - radius_m_) * cells_per_m_); };
+  const auto high = [&](double value) { return floorToInt64((value + radius_m_) * cells_per_m_); };
+  for (std::int64_t x = low(point.x()); x <= high(point.x()); ++x) {
+    for (std::int64_t y = low(point.y()); y <= high(point.y()); ++y) {
+      for (std::int64_t z = low(point.z()); z <= high(point.z()); ++z) f(cellKey(x, y, z));
     }
   }
 }
 
-void Evaluator::markNear(const Eigen::Vector3d& point) {
-  last_cell_.setConstant(std::numeric_limits<double>::infinity());  // its answer may change now
-  forEachCellNear(point, kCoarseRadii * radius_m_,
-                  [&](std::uint64_t key) { near_[key % kCoarseBits] = true; });
+void Evaluator::Shelf::add(const Unmatched& unmatched) {
+  if (points_.size() == points_.capacity()) {
+    // The same scan may come more than once: it must not take more memory.
+    mergeEqual();
+    if (merged_ >= points_.capacity() / 8 * 7) {
+      points_.reserve(std::max(kMinCapacity, merged_ / 4 * 5));
+    }
+  }
+  points_.push_back(unmatched);
 }
 
-bool Evaluator::nearUnmatched(const Eigen::Vector3d& point) {
-  const Eigen::Array3d cell = (point / (kCoarseRadii * radius_m_)).array().floor();
-  if ((cell != last_cell_).any()) {
-    last_cell_ = cell;
-    last_near_ =
-        near_[hashCell(static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                       static_cast<std::int64_t>(cell.z())) %
-              kCoarseBits];
+void Evaluator::Shelf::mergeEqual() {
+  const auto before = [](const Unmatched& a, const Unmatched& b) {
+    return std::tie(a.cell, a.point.x(), a.point.y(), a.point.z()) <
+           std::tie(b.cell, b.point.x(), b.point.y(), b.point.z());
+  };
+  const auto added = points_.begin() + static_cast<std::ptrdiff_t>(merged_);
+  std::sort(added, points_.end(), before);
+  std::inplace_merge(points_.begin(), added, points_.end(), before);
+  merged_ = 0;
+  for (const Unmatched& next : points_) {
+    if (merged_ > 0 && points_[merged_ - 1].point == next.point) {
+      points_[merged_ - 1].static_count += next.static_count;
+      points_[merged_ - 1].moving_count += next.moving_count;
+    } else {
+      points_[merged_++] = next;
+    }
   }
-  return last_near_;
+  points_.resize(merged_, {});
+}
+
+void Evaluator::Shelf::finish() {
+  mergeEqual();
+  kept_ = std::vector<std::atomic<bool>>(points_.size());
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    cells += i == 0 || points_[i].cell != points_[i - 1].cell;
+  }
+  std::size_t places = 2;  // a power of two, and at most half of them taken
+  while (places < 2 * cells) places *= 2;
+  runs_.assign(places, {});
+  for (std::size_t begin = 0, end = 0; begin < points_.size(); begin = end) {
+    const std::uint64_t cell = points_[begin].cell;
+    while (end < points_.size() && points_[end].cell == cell) ++end;
+    const auto place = static_cast<std::size_t>(&find(cell) - runs_.data());
+    runs_[place] = {cell, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+}
+
+const Evaluator::Shelf::Run* Evaluator::Shelf::firstPlace(std::uint64_t cell) const {
+  // Cells above each other follow each other.
+  return &runs_[((hashOf(cell >> 2) << 2) + (cell & 3)) & (runs_.size() - 1)];
+}
+
+const Evaluator::Shelf::Run& Evaluator::Shelf::find(std::uint64_t cell) const {
+  const Run* run = firstPlace(cell);
+  while (run->end > 0 && run->cell != cell) {
+    if (++run == runs_.data() + runs_.size()) run = runs_.data();
+  }
+  return *run;
+}
+
+void Evaluator::Shelf::match(const Run& run, const Eigen::Vector3d& point, double radius_m) {
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    if ((points_[i].point - point).squaredNorm() < radius_m * radius_m) {
+      kept_[i].store(true, std::memory_order_relaxed);
+    }
+  }
+}
+
+void Evaluator::Shelf::addKeptTo(Score& score) const {
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (!kept_[i].load(std::memory_order_relaxed)) continue;
+    score.kept_static += points_[i].static_count;
+    score.kept_dynamic += points_[i].moving_count;
+  }
+}
+
+Evaluator::CellSet::CellSet() : cubes_(kCubeWords), lines_(kCubeLines) {}
+
+void Evaluator::CellSet::insert(std::uint64_t cell) {
+  const std::uint64_t hash = hashOfCube(cell);
+  cubes_[hash % kCubeWords] |= std::uint64_t{1} << (hash >> 58);
+  lines_[hash % kCubeLines].words[cell >> 6 & 7] |= std::uint64_t{1} << (cell & 63);
+}
+
+bool Evaluator::CellSet::mayHoldCube(std::uint64_t cell) const {
+  const std::uint64_t hash = hashOfCube(cell);
+  return (cubes_[hash % kCubeWords] >> (hash >> 58) & 1) != 0;
+}
+
+bool Evaluator::CellSet::mayHold(std::uint64_t cell) const {
+  return (lines_[hashOfCube(cell) % kCubeLines].words[cell >> 6 & 7] >> (cell & 63) & 1) != 0;
 }
 
 }  // namespace beautymap

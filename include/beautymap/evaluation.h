@@ -3,9 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <unordered_map>
 #include <vector>
 
 namespace beautymap {
@@ -25,45 +26,92 @@ struct Score {
 
 /// Scores a cleaned map against labelled points: a ground-truth point is kept when the cleaned map
 /// has a point nearer than the radius. First every ground-truth point is added, then the cleaned
-/// map's points are shown. Memory grows with the points that are not known to be kept when they are
-/// added.
+/// map's points are shown. Memory grows with the different positions that are not known to be kept
+/// when they are added.
 class Evaluator {
  public:
   /// @param radius_m  [m], > 0
   explicit Evaluator(double radius_m = 0.05);
 
-  /// A ground-truth point that the cleaned map holds itself.
-  void addKept(bool moving);
+  /// Ground-truth points that the cleaned map holds itself.
+  void addKept(bool moving, std::uint64_t count = 1);
   /// A ground-truth point [m] that may or may not have a point of the cleaned map near it.
   /// Non-finite ones count as removed.
   void addUnmatched(const Eigen::Vector3d& point, bool moving);
-  /// A point of the cleaned map [m].
-  void showCleaned(const Eigen::Vector3d& point);
 
-  const Score& score() const { return score_; }
+  /// Between the last ground-truth point and the first one of the cleaned map.
+  void finishTruth();
+  /// Points of the cleaned map [m]; blocks of some thousands are fastest. Several threads may show
+  /// points at once: their order does not matter.
+  void showCleaned(const std::vector<Eigen::Vector3d>& points);
+
+  Score score() const;
 
  private:
+  /// A ground-truth position, and how many points of each label are there.
   struct Unmatched {
+    std::uint64_t cell;
     Eigen::Vector3d point;
-    std::uint32_t static_count = 0;
-    std::uint32_t moving_count = 0;
+    std::uint32_t static_count;
+    std::uint32_t moving_count;
+  };
+  /// The points of a part of the cells.
+  class Shelf {
+   public:
+    /// Points of one cell; empty for begin == end.
+    struct Run {
+      std::uint64_t cell = 0;
+      std::uint32_t begin = 0, end = 0;
+    };
+
+    void add(const Unmatched& unmatched);
+    void finish();
+    /// Where find() will look first.
+    const Run* firstPlace(std::uint64_t cell) const;
+    const Run& find(std::uint64_t cell) const;
+    /// Marks the points of a run that are near.
+    void match(const Run& run, const Eigen::Vector3d& point, double radius_m);
+    const std::vector<Unmatched>& points() const { return points_; }
+    void addKeptTo(Score& score) const;
+
+   private:
+    void mergeEqual();
+
+    std::vector<Unmatched> points_;
+    std::size_t merged_ = 0;  ///< so many at the front are sorted and different
+    std::vector<Run> runs_;   ///< hashed
+    std::vector<std::atomic<bool>> kept_;
+  };
+  /// A set of cells that tells at once what it does not hold; cubes that share a line of bits may
+  /// make it hold more.
+  class CellSet {
+   public:
+    CellSet();
+    void insert(std::uint64_t cell);
+    /// Whether a cell of the same cube may be in it; the answer is mostly in a near cache.
+    bool mayHoldCube(std::uint64_t cell) const;
+    bool mayHold(std::uint64_t cell) const;
+
+   private:
+    /// The cells of a cube, in one cache line.
+    struct alignas(64) Line {
+      std::array<std::uint64_t, 8> words{};
+    };
+    std::vector<std::uint64_t> cubes_;
+    std::vector<Line> lines_;
   };
 
-  std::uint64_t cellKey(const Eigen::Vector3d& point) const;
-  bool nearUnmatched(const Eigen::Vector3d& point);
-  void markNear(const Eigen::Vector3d& point);
+  Shelf& shelfOf(std::uint64_t cell);
+  std::uint64_t cellOf(const Eigen::Vector3d& point) const;
   template <typename F>
-  void forEachCellNear(const Eigen::Vector3d& point, double cell_m, F f) const;
-  void matchInCell(std::uint64_t key, const Eigen::Vector3d& point);
+  void forEachCellInReach(const Eigen::Vector3d& point, F f) const;
 
   double radius_m_;
-  Score score_;
-  std::unordered_map<std::uint64_t, std::vector<Unmatched>> cells_;
-  Eigen::Array3d last_cell_ = Eigen::Array3d::Constant(
-      std::numeric_limits<double>::infinity());  ///< mostly the next point's, too
-  bool last_near_ = false;
-  std::vector<bool>
-      near_;  ///< hashed coarse cells that reach into the radius of an unmatched point
+  double cells_per_m_;
+  Score known_;  ///< all points, and those that are kept without a search
+  std::vector<Shelf> shelves_;
+  CellSet near_;      ///< cells within the radius of an unmatched point
+  CellSet occupied_;  ///< cells with unmatched points
 };
 
 }  // namespace beautymap

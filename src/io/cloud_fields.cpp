@@ -264,19 +264,28 @@ double FieldReader::operator()(std::size_t point) const {
 
 pcl::PCLPointCloud2 moveCloud(const pcl::PCLPointCloud2& cloud,
                               const Eigen::Isometry3d& T_map_cloud, bool as_float64) {
+  pcl::PCLPointCloud2 moved;
+  moveCloud(cloud, T_map_cloud, as_float64, moved);
+  return moved;
+}
+
+void moveCloud(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud,
+               bool as_float64, pcl::PCLPointCloud2& moved) {
   const std::uint8_t wanted = as_float64 ? kFloat64 : kFloat32;
   const FieldReader x(cloud, "x");
   const FieldReader y(cloud, "y");
   const FieldReader z(cloud, "z");
   if (x.datatype() == wanted && y.datatype() == wanted && z.datatype() == wanted) {
-    pcl::PCLPointCloud2 moved = cloud;
-    if (T_map_cloud.matrix() == Eigen::Matrix4d::Identity()) return moved;
+    moved = cloud;
+    if (T_map_cloud.matrix() == Eigen::Matrix4d::Identity()) return;
     as_float64 ? moveInPlace<double>(moved, T_map_cloud) : moveInPlace<float>(moved, T_map_cloud);
-    return moved;
+    return;
   }
 
   std::vector<CopyRun> runs;
-  pcl::PCLPointCloud2 moved = packedLayout(cloud, wanted, runs);
+  std::vector<std::uint8_t> recycled = std::move(moved.data);
+  moved = packedLayout(cloud, wanted, runs);
+  moved.data = std::move(recycled);
   moved.width = cloud.width;
   moved.data.resize(pointCount(cloud) * moved.point_step);
   moved.row_step = static_cast<std::uint32_t>(moved.data.size());
@@ -291,7 +300,6 @@ pcl::PCLPointCloud2 moveCloud(const pcl::PCLPointCloud2& cloud,
                  : store<float>(record + offsets[axis], point[axis]);
     }
   }
-  return moved;
 }
 
 }  // namespace beautymap

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "moving_labels.h"
+#include "beautymap/io/moving_labels.h"
 
 #include <algorithm>
 #include <cmath>

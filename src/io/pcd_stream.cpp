@@ -42,15 +42,15 @@ pcl::PCLPointCloud2 readWhole(const std::string& path, const PcdHeader& header) 
 
 void readBinaryBlocks(const std::string& path, const PcdHeader& header,
                       const std::function<void(const pcl::PCLPointCloud2&)>& block,
-                      std::size_t block_points) {
+                      std::size_t block_points, PcdRange range) {
   pcl::PCLPointCloud2 cloud = header.layout;
   cloud.height = 1;
   if (const auto wrong = normalizeCloud(cloud)) throw InputError(path + ": " + *wrong);
   std::ifstream in(path, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(header.data_offset));
-  for (std::uint64_t done = 0; done < header.points; done += cloud.width) {
+  in.seekg(static_cast<std::streamoff>(header.data_offset + range.begin * cloud.point_step));
+  for (std::uint64_t done = range.begin; done < range.end; done += cloud.width) {
     cloud.width = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>({block_points, header.points - done, 1U << 30}));
+        std::min<std::uint64_t>({block_points, range.end - done, 1U << 30}));
     cloud.data.resize(static_cast<std::size_t>(cloud.width) * cloud.point_step);
     cloud.row_step = static_cast<std::uint32_t>(cloud.data.size());
     if (!in.read(reinterpret_cast<char*>(cloud.data.data()),
@@ -124,11 +124,25 @@ PcdStreamWriter::~PcdStreamWriter() {
   std::remove(temporary_path_.c_str());
 }
 
-void PcdStreamWriter::append(const std::uint8_t* point_record) {
-  if (buffered_ + header_.layout.point_step > buffer_.size()) flush();
-  copyRuns(runs_, point_record, buffer_.data() + buffered_);
-  buffered_ += header_.layout.point_step;
-  ++header_.points;
+void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t count) {
+  const std::size_t step = header_.layout.point_step;
+  const bool is_packed = runs_.size() == 1 && runs_[0].from == 0 && input_step_ == step;
+  header_.points += count;
+  while (count > 0) {
+    if (buffered_ + step > buffer_.size()) flush();
+    const std::size_t fitting = std::min(count, (buffer_.size() - buffered_) / step);
+    std::uint8_t* to = buffer_.data() + buffered_;
+    if (is_packed) {
+      std::memcpy(to, point_records, fitting * step);
+    } else {
+      for (std::size_t i = 0; i < fitting; ++i) {
+        copyRuns(runs_, point_records + i * input_step_, to + i * step);
+      }
+    }
+    buffered_ += fitting * step;
+    point_records += fitting * input_step_;
+    count -= fitting;
+  }
 }
 
 void PcdStreamWriter::flush() {
@@ -161,16 +175,17 @@ bool PcdStreamWriter::accepts(const pcl::PCLPointCloud2& cloud) const {
 
 void readPcdBlocks(const std::string& path,
                    const std::function<void(const pcl::PCLPointCloud2&)>& block,
-                   std::size_t block_points) {
+                   std::size_t block_points, PcdRange range) {
   const PcdHeader header = readPcdHeader(path);
   block_points = std::max<std::size_t>(1, block_points);
+  range.end = std::min(range.end, header.points);
   if (header.encoding == PcdHeader::Encoding::kBinary) {
-    readBinaryBlocks(path, header, block, block_points);
+    readBinaryBlocks(path, header, block, block_points, range);
     return;
   }
   const pcl::PCLPointCloud2 cloud = readWhole(path, header);
-  for (std::size_t first = 0; first < pointCount(cloud); first += block_points) {
-    block(slice(cloud, first, std::min(block_points, pointCount(cloud) - first)));
+  for (std::size_t first = range.begin; first < range.end; first += block_points) {
+    block(slice(cloud, first, std::min<std::size_t>(block_points, range.end - first)));
   }
 }
 
@@ -178,8 +193,8 @@ pcl::PCLPointCloud2 readPcd(const std::string& path) {
   const PcdHeader header = readPcdHeader(path);
   if (header.encoding != PcdHeader::Encoding::kBinary) return readWhole(path, header);
   pcl::PCLPointCloud2 whole;
-  readBinaryBlocks(
-      path, header, [&](const auto& cloud) { whole = cloud; }, header.points);
+  readBinaryBlocks(path, header, [&](const auto& cloud) { whole = cloud; }, header.points,
+                   {0, header.points});
   return whole;
 }
 

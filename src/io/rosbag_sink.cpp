@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "beautymap/io/cloud_fields.h"
-#include "moving_labels.h"
+#include "beautymap/io/moving_labels.h"
 #include "scan_files.h"
 
 namespace beautymap {

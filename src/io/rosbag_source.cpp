@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <future>
+#include <thread>
 
 #include "beautymap/io/cloud_fields.h"
 #include "scan_files.h"
@@ -130,18 +132,54 @@ Topic chooseOdometryTopic(const RosbagFiles& files, const std::string& wanted) {
                    (list.empty() ? "topics: " + allTopics(files) : "candidates:" + list));
 }
 
-/// Calls `use` with every readable message of a window of time.
-template <typename Message, typename Use>
-void forEach(const RosbagFiles& files, const RosbagFiles::Query& query, const Window& window,
-             const Use& use) {
+/// Every readable message of a window of time, in the order of record times.
+template <typename Message>
+std::vector<boost::shared_ptr<Message>> readAll(const RosbagFiles& files,
+                                                const RosbagFiles::Query& query,
+                                                const Window& window) {
+  std::vector<boost::shared_ptr<Message>> messages;
   const auto view = files.view(query, window.begin, window.end);
   for (const auto& instance : *view) {
     try {
-      const auto message = instance.instantiate<Message>();
-      if (message != nullptr) use(*message);
+      auto message = instance.instantiate<Message>();
+      if (message != nullptr) messages.push_back(std::move(message));
     } catch (const std::exception&) {
       continue;  // the scans that miss it are counted
     }
+  }
+  return messages;
+}
+
+/// Cuts the part of a window that has messages into equal stretches.
+std::vector<Window> stretchesOf(const RosbagFiles& files, const Window& window,
+                                std::uint64_t count) {
+  const std::uint64_t begin = std::max(window.begin, files.begin()).toNSec();
+  const std::uint64_t length = std::min(window.end, files.end()).toNSec() - begin + 1;
+  std::vector<Window> stretches(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    stretches[i].begin.fromNSec(begin + length * i / count);
+    stretches[i].end.fromNSec(begin + length * (i + 1) / count - 1);
+  }
+  return stretches;
+}
+
+/// Calls `use` with every readable message of a window of time. Clouds lie between the messages,
+/// and compressed bags must be decompressed as a whole: each thread reads its own stretch of time.
+template <typename Message, typename Use>
+void forEach(const RosbagFiles& files, const RosbagFiles::Query& query, const Window& window,
+             const Use& use) {
+  const std::uint64_t threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<RosbagFiles> opened;
+  for (std::uint64_t t = 1; t < threads; ++t) opened.emplace_back(files.paths());
+  std::vector<std::future<std::vector<boost::shared_ptr<Message>>>> parts;
+  for (const Window& stretch : stretchesOf(files, window, threads)) {
+    const RosbagFiles& own = parts.empty() ? files : opened[parts.size() - 1];
+    parts.push_back(std::async(std::launch::async, [&own, &query, stretch] {
+      return readAll<Message>(own, query, stretch);
+    }));
+  }
+  for (auto& part : parts) {
+    for (const auto& message : part.get()) use(*message);
   }
 }
 
@@ -156,15 +194,15 @@ RosbagFiles::Query transforms(bool is_static) {
 
 TfHistory loadTf(const RosbagFiles& files, const Window& window) {
   TfHistory tf;
-  for (const bool is_static : {true, false}) {
-    // Static transforms are recorded once, at the beginning.
-    forEach<tf2_msgs::TFMessage>(files, transforms(is_static), is_static ? Window() : window,
-                                 [&](const auto& message) {
-                                   for (const auto& transform : message.transforms) {
-                                     tf.insert(transform, is_static);
-                                   }
-                                 });
+  const auto insert = [&](const tf2_msgs::TFMessage& message, bool is_static) {
+    for (const auto& transform : message.transforms) tf.insert(transform, is_static);
+  };
+  // Static transforms are few, and recorded once, at the beginning.
+  for (const auto& message : readAll<tf2_msgs::TFMessage>(files, transforms(true), Window())) {
+    insert(*message, true);
   }
+  forEach<tf2_msgs::TFMessage>(files, transforms(false), window,
+                               [&](const auto& message) { insert(message, false); });
   tf.finish();
   return tf;
 }

@@ -11,10 +11,13 @@
 #include <fstream>
 #include <future>
 #include <limits>
+#include <thread>
 #include <unordered_set>
 #include <utility>
 
 #include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/moving_labels.h"
+#include "beautymap/io/pcd_header.h"
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_spool.h"
@@ -26,11 +29,17 @@ namespace {
 
 // float32 rounds to less than half a millimetre up to here.
 constexpr double kMaxFloat32Coordinate = 8192.0;
+// Points that are shown to the evaluator at once; they fit into the cache.
+constexpr std::size_t kScoredBlock = 1 << 13;
 
 /// A scan as the source gave it, and as the core takes it.
 struct ReadScan {
   SourceScan source;
   Scan scan;
+  // To be written:
+  std::vector<PointClass> classes;
+  std::vector<bool> moving;    ///< the labels; empty without
+  pcl::PCLPointCloud2 in_map;  ///< all fields, x y z in the map frame
 };
 
 /// Calls use(scan) for each scan that read(scan) delivers, while another thread reads the next one.
@@ -66,23 +75,18 @@ Extent extentOf(const MapCleaner& cleaner) {
   return extent;
 }
 
-/// A label field may be of any type; values that no label has count as 0.
-std::uint32_t labelOf(double value) {
-  return value > 0.0 && value < 4294967296.0 ? static_cast<std::uint32_t>(value) : 0;
-}
-
 /// One of the two point files.
 class PointFile {
  public:
   PointFile(std::string path, double voxel_m) : path_(std::move(path)), voxel_m_(voxel_m) {}
 
-  /// @return false when the point's voxel has one already.
-  bool append(const pcl::PCLPointCloud2& cloud, std::size_t point,
-              const Eigen::Vector3d& position) {
+  void append(const pcl::PCLPointCloud2& cloud, std::size_t first, std::size_t count) {
     if (!writer_) writer_ = std::make_unique<PcdStreamWriter>(path_, cloud);
-    if (voxel_m_ > 0.0 && !voxels_.insert(voxelKey(position)).second) return false;
-    writer_->append(cloud.data.data() + point * cloud.point_step);
-    return true;
+    writer_->append(cloud.data.data() + first * cloud.point_step, count);
+  }
+  /// Whether a point's voxel is still free; it is taken then.
+  bool takes(const Eigen::Vector3d& position) {
+    return voxel_m_ <= 0.0 || voxels_.insert(voxelKey(position)).second;
   }
   void close(const pcl::PCLPointCloud2& layout) {
     if (!writer_) writer_ = std::make_unique<PcdStreamWriter>(path_, layout);
@@ -122,8 +126,9 @@ class OfflineRun {
     const auto start = std::chrono::steady_clock::now();
     observe();
     cleaner_.estimateGround();
-    passOverSpool("encoding", [&](const ReadScan& s) { cleaner_.encode(s.scan); });
-    passOverSpool("comparing", [&](const ReadScan& s) { cleaner_.compare(s.scan); });
+    const auto nothing = [](ReadScan&) {};
+    passOverSpool("encoding", nothing, [&](const ReadScan& s) { cleaner_.encode(s.scan); });
+    passOverSpool("comparing", nothing, [&](const ReadScan& s) { cleaner_.compare(s.scan); });
     cleaner_.segmentGround();
     write();
     for (const auto& stage : cleaner_.times().stages())
@@ -138,10 +143,12 @@ class OfflineRun {
 
  private:
   void observe();
-  template <typename Use>
-  void passOverSpool(const std::string& name, Use use);
+  template <typename Prepare, typename Use>
+  void passOverSpool(const std::string& name, Prepare prepare, Use use);
   void write();
+  void prepareWriting(ReadScan& read);
   void writeScan(const ReadScan& read);
+  void writeRun(const ReadScan& read, std::size_t first, std::size_t last);
   void scoreAgainst(const std::string& cleaned);
   void writePictures() const;
 
@@ -199,14 +206,16 @@ void OfflineRun::observe() {
   throw InputError("no scan can be used" + (reasons.empty() ? ": the input is empty" : reasons));
 }
 
-template <typename Use>
-void OfflineRun::passOverSpool(const std::string& name, Use use) {
+/// Calls use(scan) for each scan, while another thread reads and prepares the next one.
+template <typename Prepare, typename Use>
+void OfflineRun::passOverSpool(const std::string& name, Prepare prepare, Use use) {
   progress_.begin(name, spool_.size());
   spool_.rewind();
   readAhead(
       [&](ReadScan& read) {
         if (!spool_.next(read.source)) return false;
         convertScan(read.source, read.scan);
+        prepare(read);
         return true;
       },
       [&](const ReadScan& read) {
@@ -223,51 +232,87 @@ void OfflineRun::write() {
   top_view_ = std::make_unique<TopView>(extent.low, extent.high - extent.low);
   cleaned_ = std::make_unique<PointFile>(options_.output + "/cleaned.pcd", options_.voxel_m);
   dynamic_ = std::make_unique<PointFile>(options_.output + "/dynamic.pcd", options_.voxel_m);
-  passOverSpool("writing", [&](const ReadScan& read) { writeScan(read); });
+  passOverSpool(
+      "writing", [&](ReadScan& read) { prepareWriting(read); },
+      [&](const ReadScan& read) { writeScan(read); });
   cleaned_->close(output_layout_);
   dynamic_->close(output_layout_);
   StageClock clock(report_.stages);
+  auto pictures = std::async(std::launch::async, [&] { writePictures(); });
   if (labelled_) scoreAgainst(cleaned_->path());
   clock.lap("score");
-  writePictures();
+  pictures.get();
   clock.lap("pictures");
 }
 
+/// What takes about as long as writing itself, and so is done beside it.
+void OfflineRun::prepareWriting(ReadScan& read) {
+  read.classes = cleaner_.classify(read.scan);
+  if (labelled_) read.moving = movingPoints(read.source.cloud, source_);
+  moveCloud(read.source.cloud, read.source.T_map_cloud, report_.float64_coordinates, read.in_map);
+}
+
 void OfflineRun::writeScan(const ReadScan& read) {
-  const std::vector<PointClass> classes = cleaner_.classify(read.scan);
   StageClock clock(report_.stages);
-  const pcl::PCLPointCloud2 cloud =
-      moveCloud(read.source.cloud, read.source.T_map_cloud, report_.float64_coordinates);
-  output_layout_.fields = cloud.fields;
-  output_layout_.point_step = cloud.point_step;
-  const PositionReader position_of(cloud);
-  const FieldReader label(cloud, labelled_ ? "label" : "x");
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    const bool removed = classes[i] == PointClass::kDynamic;
-    const bool moving = labelled_ && source_.isMoving(labelOf(label(i)));
+  output_layout_.fields = read.in_map.fields;
+  output_layout_.point_step = read.in_map.point_step;
+  // Neighbouring points mostly have the same class.
+  const std::vector<PointClass>& classes = read.classes;
+  for (std::size_t first = 0, last = 0; first < classes.size(); first = last) {
+    while (last < classes.size() && classes[last] == classes[first]) ++last;
+    writeRun(read, first, last);
+  }
+  clock.lap("write");
+}
+
+void OfflineRun::writeRun(const ReadScan& read, std::size_t first, std::size_t last) {
+  const PointClass point_class = read.classes[first];
+  const bool removed = point_class == PointClass::kDynamic;
+  const bool dropped = point_class == PointClass::kDropped;
+  const PositionReader position_of(read.in_map);
+  PointFile& file = removed ? *dynamic_ : *cleaned_;
+  if (!dropped) (removed ? report_.dynamic_points : report_.static_points) += last - first;
+
+  std::size_t unwritten = first;
+  for (std::size_t i = first; i < last; ++i) {
     const Eigen::Vector3d position = position_of(i);
-    bool kept = false;
-    if (classes[i] != PointClass::kDropped) {
-      const bool written = (removed ? dynamic_ : cleaned_)->append(cloud, i, position);
-      kept = written && !removed;
-      ++(removed ? report_.dynamic_points : report_.static_points);
-      top_view_->add(position, removed, moving);
+    const bool moving = labelled_ && read.moving[i];
+    const bool written = !dropped && file.takes(position);
+    if (!dropped) top_view_->add(position, removed, moving);
+    if (!written) {
+      file.append(read.in_map, unwritten, i - unwritten);
+      unwritten = i + 1;
     }
     if (!labelled_) continue;
-    if (kept) {
+    if (written && !removed) {
       evaluator_.addKept(moving);
     } else {
       evaluator_.addUnmatched(position, moving);
     }
   }
-  clock.lap("write");
+  file.append(read.in_map, unwritten, last - unwritten);
 }
 
 void OfflineRun::scoreAgainst(const std::string& cleaned) {
-  readPcdBlocks(cleaned, [&](const pcl::PCLPointCloud2& block) {
-    const PositionReader position(block);
-    for (std::size_t i = 0; i < block.width; ++i) evaluator_.showCleaned(position(i));
-  });
+  evaluator_.finishTruth();
+  // Each thread shows its share of the file. Their order does not matter.
+  const std::uint64_t size = readPcdHeader(cleaned).points;
+  const std::uint64_t threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> shares;
+  for (std::uint64_t t = 0; t < threads; ++t) {
+    const PcdRange share{size * t / threads, size * (t + 1) / threads};
+    shares.push_back(std::async(std::launch::async, [&, share] {
+      std::vector<Eigen::Vector3d> points;
+      const auto show = [&](const pcl::PCLPointCloud2& block) {
+        const PositionReader position(block);
+        points.resize(block.width);
+        for (std::size_t i = 0; i < points.size(); ++i) points[i] = position(i);
+        evaluator_.showCleaned(points);
+      };
+      readPcdBlocks(cleaned, show, kScoredBlock, share);
+    }));
+  }
+  for (auto& share : shares) share.get();
   report_.score = evaluator_.score();
 }
 

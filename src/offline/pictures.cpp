@@ -5,6 +5,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -15,18 +16,23 @@ namespace {
 
 constexpr int kMaxSide = 1600;        // [pixels]
 constexpr double kFinestPixel = 0.1;  // [m]
-constexpr Color kRemoved{214, 39, 40};
-constexpr Color kWronglyRemoved{255, 127, 14};
-constexpr Color kMissed{227, 26, 200};
+constexpr Color kBlue{8, 48, 140};
+constexpr Color kGrey{150, 150, 150};
+constexpr Color kRemovedColor{214, 39, 40};
+constexpr Color kWronglyRemovedColor{255, 127, 14};
+constexpr Color kMissedColor{227, 26, 200};
 
-/// Darker with more points, on a logarithmic scale.
-Color shade(std::uint32_t count, Color dark) {
-  if (count == 0) return {};
-  const double share = std::min(1.0, 0.35 + 0.13 * std::log2(static_cast<double>(count)));
-  const auto mix = [share](std::uint8_t channel) {
-    return static_cast<std::uint8_t>(255.0 - share * (255.0 - channel));
-  };
-  return {mix(dark.r), mix(dark.g), mix(dark.b)};
+/// A color for each number of points: darker with more, on a logarithmic scale.
+std::array<Color, 256> shades(Color dark) {
+  std::array<Color, 256> colors;
+  for (std::size_t count = 1; count < colors.size(); ++count) {
+    const double share = std::min(1.0, 0.35 + 0.13 * std::log2(static_cast<double>(count)));
+    const auto mix = [share](std::uint8_t channel) {
+      return static_cast<std::uint8_t>(255.0 - share * (255.0 - channel));
+    };
+    colors[count] = {mix(dark.r), mix(dark.g), mix(dark.b)};
+  }
+  return colors;
 }
 
 /// Purple over green to yellow, close to matplotlib's viridis.
@@ -52,6 +58,7 @@ void Picture::writePng(const std::string& path) const {
   image.width = static_cast<png_uint_32>(width_);
   image.height = static_cast<png_uint_32>(height_);
   image.format = PNG_FORMAT_RGB;
+  image.flags = PNG_IMAGE_FLAG_FAST;
   const std::string temporary = path + ".tmp";
   if (!png_image_write_to_file(&image, temporary.c_str(), 0, pixels_.data(), 0, nullptr) ||
       std::rename(temporary.c_str(), path.c_str()) != 0) {
@@ -66,45 +73,37 @@ TopView::TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent)
       pixels_per_metre_(1.0 / metres_per_pixel_),
       width_(std::max(1, static_cast<int>(std::ceil(extent.x() / metres_per_pixel_)))),
       height_(std::max(1, static_cast<int>(std::ceil(extent.y() / metres_per_pixel_)))),
-      pixels_(static_cast<std::size_t>(width_) * height_) {}
-
-void TopView::add(const Eigen::Vector3d& point, bool removed, bool moving) {
-  const Eigen::Vector2d position = (point.head<2>() - corner_) * pixels_per_metre_;
-  if (!(position.minCoeff() >= 0.0 && position.x() < width_ && position.y() < height_)) return;
-  const int x = static_cast<int>(position.x());
-  const int y = static_cast<int>(position.y());
-  Pixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
-  ++(removed ? pixel.removed : pixel.kept);
-  if (removed && !moving) ++pixel.removed_static;
-  if (!removed && moving) ++pixel.kept_moving;
-}
+      blocks_per_row_((width_ + 7) / 8),
+      pixels_(indexOf(0, height_ + 3)) {}
 
 template <typename F>
 Picture TopView::draw(F color) const {
   Picture picture(width_, height_);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      picture.at(x, y) = color(pixels_[static_cast<std::size_t>(y) * width_ + x]);
+      picture.at(x, y) = color(pixels_[indexOf(x, y)]);
     }
   }
   return picture;
 }
 
 Picture TopView::before() const {
-  return draw([](const Pixel& p) {
-    return p.removed > 0 ? kRemoved : shade(p.kept, {8, 48, 140});
-  });
+  const auto blue = shades(kBlue);
+  return draw(
+      [&](const Pixel& p) { return (p.marks & kRemoved) != 0 ? kRemovedColor : blue[p.kept]; });
 }
 
 Picture TopView::after() const {
-  return draw([](const Pixel& p) { return shade(p.kept, {8, 48, 140}); });
+  const auto blue = shades(kBlue);
+  return draw([&](const Pixel& p) { return blue[p.kept]; });
 }
 
 Picture TopView::mistakes() const {
-  return draw([](const Pixel& p) {
-    if (p.kept_moving > 0) return kMissed;
-    if (p.removed_static > 0) return kWronglyRemoved;
-    return shade(p.kept, {150, 150, 150});
+  const auto grey = shades(kGrey);
+  return draw([&](const Pixel& p) {
+    if ((p.marks & kKeptMoving) != 0) return kMissedColor;
+    if ((p.marks & kRemovedStatic) != 0) return kWronglyRemovedColor;
+    return grey[p.kept];
   });
 }
 
@@ -131,7 +130,7 @@ Picture drawMatrix(const TileMap& map) {
       const int x = ((index.x - low.x) * Tile::kSide + (i >> Tile::kShift)) / step;
       const int y = ((index.y - low.y) * Tile::kSide + (i & (Tile::kSide - 1))) / step;
       picture.at(x, y) = tile.dynamic[static_cast<std::size_t>(i)] != 0
-                             ? kRemoved
+                             ? kRemovedColor
                              : heat(static_cast<double>(highestBitIndex(column)) / highest);
     }
   });

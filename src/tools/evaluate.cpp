@@ -45,7 +45,8 @@ Score evaluate(const std::string& ground_truth, const std::string& cleaned, doub
       evaluator.addUnmatched(point, moving);
     }
   });
-  for (const Eigen::Vector3d& point : map) evaluator.showCleaned(point);
+  evaluator.finishTruth();
+  evaluator.showCleaned(map);
   return evaluator.score();
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "core/test_scenes.h"
@@ -38,7 +39,8 @@ Score evaluate(const std::vector<Labelled>& truth, const std::vector<Eigen::Vect
                double radius) {
   Evaluator evaluator(radius);
   for (const Labelled& t : truth) evaluator.addUnmatched(t.point, t.moving);
-  for (const Eigen::Vector3d& c : cleaned) evaluator.showCleaned(c);
+  evaluator.finishTruth();
+  evaluator.showCleaned(cleaned);
   return evaluator.score();
 }
 
@@ -80,6 +82,35 @@ TEST(Evaluation, AgreesWithComparingAllPairs) {
   }
 }
 
+TEST(Evaluation, ThreadsAndRepeatedPointsChangeNothing) {
+  Random random(7);
+  const auto point = [&] {
+    return Eigen::Vector3d(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-1, 1));
+  };
+  std::vector<Labelled> truth;
+  for (int i = 0; i < 5000; ++i) truth.push_back({point(), random.chance(0.3)});
+  std::vector<Eigen::Vector3d> cleaned;
+  for (int i = 0; i < 5000; ++i) cleaned.push_back(point());
+  const Score once = evaluate(truth, cleaned, 0.05);
+  ASSERT_GT(once.kept_static, 0U);
+
+  constexpr std::uint64_t kTimes = 100;
+  Evaluator evaluator(0.05);
+  for (std::uint64_t i = 0; i < kTimes; ++i) {
+    for (const Labelled& t : truth) evaluator.addUnmatched(t.point, t.moving);
+  }
+  evaluator.finishTruth();
+  std::vector<std::thread> threads;
+  for (const auto offset : {0, 1250, 2500, 3750}) {
+    const std::vector<Eigen::Vector3d> share(cleaned.begin() + offset,
+                                             cleaned.begin() + offset + 1250);
+    threads.emplace_back([&evaluator, share] { evaluator.showCleaned(share); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  expectEqual(evaluator.score(), {once.static_points * kTimes, once.dynamic_points * kTimes,
+                                  once.kept_static * kTimes, once.kept_dynamic * kTimes});
+}
+
 TEST(Evaluation, APointAtExactlyTheRadiusIsNotKept) {
   EXPECT_EQ(evaluate({{{1.0, 2.0, 3.0}, false}}, {{1.25, 2.0, 3.0}}, 0.25).kept_static, 0U);
   EXPECT_EQ(evaluate({{{1.0, 2.0, 3.0}, false}}, {{1.249, 2.0, 3.0}}, 0.25).kept_static, 1U);
@@ -91,7 +122,8 @@ TEST(Evaluation, WhatTheCleanedMapHoldsItselfIsKept) {
   evaluator.addKept(true);
   evaluator.addUnmatched({0, 0, 0}, true);
   evaluator.addUnmatched({9, 0, 0}, false);
-  evaluator.showCleaned({0.04, 0, 0});
+  evaluator.finishTruth();
+  evaluator.showCleaned({{0.04, 0, 0}});
   expectEqual(evaluator.score(), {4, 2, 3, 2});
 }
 

@@ -155,6 +155,20 @@ TEST(PcdStreamWriter, AcceptsOnlyTheLayoutItWasMadeFor) {
   EXPECT_FALSE(writer.accepts(other));
 }
 
+TEST(PcdStreamWriter, ManyPointsAtOnceAreTheSameAsOneByOne) {
+  const TempFolder folder;
+  const Cloud packed = makeCloud({{1.5F, 2, 3}, {4, 5, 6}, {7, 8, 9.25F}}, 3);
+  for (const Cloud& cloud : {oddCloud(200'000), packed}) {
+    writeAll(folder / "one_by_one.pcd", cloud);
+    PcdStreamWriter writer(folder / "at_once.pcd", cloud);
+    writer.append(cloud.data.data(), 1);
+    writer.append(cloud.data.data() + cloud.point_step, 0);
+    writer.append(cloud.data.data() + cloud.point_step, pointCount(cloud) - 1);
+    writer.close();
+    EXPECT_EQ(readFile(folder / "at_once.pcd"), readFile(folder / "one_by_one.pcd"));
+  }
+}
+
 TEST(ReadPcdBlocks, GivesAllPointsInOrderInBlocks) {
   const TempFolder folder;
   const Cloud cloud = oddCloud(10);
@@ -172,6 +186,27 @@ TEST(ReadPcdBlocks, GivesAllPointsInOrderInBlocks) {
       },
       4);
   EXPECT_EQ(sizes, (std::vector<std::size_t>{4, 4, 2}));
+}
+
+TEST(ReadPcdBlocks, RangesThatFollowEachOtherGiveAllPointsOnce) {
+  const TempFolder folder;
+  const Cloud cloud = oddCloud(10);
+  writeAll(folder / "binary.pcd", cloud);
+  pcl::PCDWriter().writeASCII(folder / "ascii.pcd", readPcd(folder / "binary.pcd"));
+  for (const char* name : {"binary.pcd", "ascii.pcd"}) {
+    SCOPED_TRACE(name);
+    const Cloud whole = readPcd(folder / name);
+    std::size_t next = 0;
+    for (const PcdRange range : {PcdRange{0, 3}, PcdRange{3, 3}, PcdRange{3, 8}, PcdRange{8, 99}}) {
+      const auto compare = [&](const Cloud& block) {
+        for (std::size_t i = 0; i < pointCount(block); ++i) {
+          EXPECT_EQ(valuesOf(block, i), valuesOf(whole, next++));
+        }
+      };
+      readPcdBlocks(folder / name, compare, 2, range);
+      EXPECT_EQ(next, std::min<std::size_t>(range.end, 10));
+    }
+  }
 }
 
 TEST(ReadPcdBlocks, ReadsAsciiAndCompressedFiles) {

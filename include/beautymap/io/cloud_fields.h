@@ -53,5 +53,8 @@ class FieldReader {
 /// follow each other in their order without padding. Points that are not finite stay not finite.
 pcl::PCLPointCloud2 moveCloud(const pcl::PCLPointCloud2& cloud,
                               const Eigen::Isometry3d& T_map_cloud, bool as_float64);
+/// The same into a cloud whose memory is used again.
+void moveCloud(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud,
+               bool as_float64, pcl::PCLPointCloud2& moved);
 
 }  // namespace beautymap

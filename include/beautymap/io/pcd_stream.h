@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,10 @@ class PcdStreamWriter {
   PcdStreamWriter(const PcdStreamWriter&) = delete;
   PcdStreamWriter& operator=(const PcdStreamWriter&) = delete;
 
-  /// Appends one point of a cloud that has the same fields and the same layout as `like`.
+  /// Appends points of a cloud that has the same fields and the same layout as `like`, one record
+  /// after the other.
   /// @throws InputError when the disk is full.
-  void append(const std::uint8_t* point_record);
+  void append(const std::uint8_t* point_records, std::size_t count = 1);
   /// @throws InputError when the disk is full or the file cannot be renamed; the target is then
   /// unchanged.
   void close();
@@ -57,12 +59,18 @@ class PcdStreamWriter {
   std::size_t buffered_ = 0;
 };
 
+/// Points [begin, end) of a file; as many of them as there are.
+struct PcdRange {
+  std::uint64_t begin = 0;
+  std::uint64_t end = std::numeric_limits<std::uint64_t>::max();
+};
+
 /// Streams a binary PCD file of any size in blocks (binary_compressed and ascii are read
 /// whole). Calls `block` with normalized clouds of 1 to `block_points` points, in order.
 /// @throws InputError when the file is not a PCD file, is truncated or has no numeric x, y, z.
 void readPcdBlocks(const std::string& path,
                    const std::function<void(const pcl::PCLPointCloud2&)>& block,
-                   std::size_t block_points = 1 << 20);
+                   std::size_t block_points = 1 << 20, PcdRange range = {});
 
 /// The whole file as one normalized cloud.
 /// @throws InputError as readPcdBlocks.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -41,7 +42,14 @@ class TopView {
   TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent);
 
   /// @param moving  the point's label, false where there are none
-  void add(const Eigen::Vector3d& point, bool removed, bool moving);
+  void add(const Eigen::Vector3d& point, bool removed, bool moving) {
+    const double x = (point.x() - corner_.x()) * pixels_per_metre_;
+    const double y = (point.y() - corner_.y()) * pixels_per_metre_;
+    if (!(x >= 0.0 && y >= 0.0 && x < width_ && y < height_)) return;
+    Pixel& pixel = pixels_[indexOf(static_cast<int>(x), static_cast<int>(y))];
+    pixel.kept = static_cast<std::uint8_t>(std::min(255, pixel.kept + (removed ? 0 : 1)));
+    if (removed || moving) mark(pixel, removed, moving);
+  }
 
   /// Static points blue, removed ones red on top of them.
   Picture before() const;
@@ -52,9 +60,26 @@ class TopView {
   double metresPerPixel() const { return metres_per_pixel_; }
 
  private:
+  /// Small, as points come in any order and wait for their pixel.
   struct Pixel {
-    std::uint32_t kept = 0, removed = 0, removed_static = 0, kept_moving = 0;
+    std::uint8_t kept = 0;   ///< points; the largest number also stands for more
+    std::uint8_t marks = 0;  ///< kRemoved and so on
   };
+  static constexpr std::uint8_t kRemoved = 1, kRemovedStatic = 2, kKeptMoving = 4;
+
+  static void mark(Pixel& pixel, bool removed, bool moving) {
+    if (removed) {
+      pixel.marks |= moving ? kRemoved : kRemoved | kRemovedStatic;
+    } else {
+      pixel.marks |= kKeptMoving;
+    }
+  }
+
+  /// Blocks of 8 x 4 pixels follow each other: neighbouring points then share a cache line.
+  std::size_t indexOf(int x, int y) const {
+    const int block = (y >> 2) * blocks_per_row_ + (x >> 3);
+    return static_cast<std::size_t>(block) * 32 + static_cast<std::size_t>((y & 3) * 8 + (x & 7));
+  }
   template <typename F>
   Picture draw(F color) const;
 
@@ -62,6 +87,7 @@ class TopView {
   double metres_per_pixel_;
   double pixels_per_metre_;
   int width_, height_;
+  int blocks_per_row_;
   std::vector<Pixel> pixels_;
 };
 
