@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace beautymap {
 namespace {
@@ -68,27 +69,37 @@ Bits inImage(Bits candidates, const BeamImage& beams, const ColumnView& view) {
 /// The beams in the azimuths of a column, summed by slope: those that passed it, and all of them.
 class BeamSums {
  public:
+  /// From one slope of the image to another.
   void sum(const BeamImage& beams, const ColumnView& view, int first_slope, int last_slope) {
     first_slope_ = first_slope;
-    const auto size = static_cast<std::size_t>(last_slope - first_slope + 1);
-    all_.assign(size, 0);
-    passed_.assign(size, 0);
-    BeamImage::Pixel* all = all_.data();
-    BeamImage::Pixel* passed = passed_.data();
-    const BeamImage::Pixel behind = view.behind;
+    last_slope_ = last_slope;
+    rows_.clear();
     for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
-      const BeamImage::Pixel* row = beams.row(wrapped(u, beams.azimuthPixels())) + first_slope;
-      for (std::size_t v = 0; v < size; ++v) {
-        const BeamImage::Pixel count = BeamImage::countOf(row[v]);
-        all[v] += count;
-        passed[v] += row[v] > behind ? count : 0;
+      rows_.push_back(beams.row(wrapped(u, beams.azimuthPixels())) + first_slope -
+                      beams.firstSlope());
+    }
+    const auto size = static_cast<std::size_t>(last_slope - first_slope + 1);
+    all_.resize(size + 2 * kLanes);
+    passed_.resize(size + 2 * kLanes);
+    const BeamImage::Pixel limit = view.behind;
+    const Lanes behind = {limit, limit, limit, limit};
+    for (std::size_t v = 0; v < size; v += 2 * kLanes) {
+      Lanes all_low{}, all_high{}, passed_low{}, passed_high{};
+      for (const BeamImage::Pixel* row : rows_) {
+        add(row + v, behind, all_low, passed_low);
+        add(row + v + kLanes, behind, all_high, passed_high);
       }
+      store(all_low, &all_[v]);
+      store(all_high, &all_[v + kLanes]);
+      store(passed_low, &passed_[v]);
+      store(passed_high, &passed_[v + kLanes]);
     }
   }
 
   bool seesFree(int first_slope, int last_slope, const VisibilityConfig& config) const {
     int all = 0, passed = 0;
-    for (int v = first_slope - first_slope_; v <= last_slope - first_slope_; ++v) {
+    const int end = std::min(last_slope, last_slope_) - first_slope_;
+    for (int v = std::max(first_slope, first_slope_) - first_slope_; v <= end; ++v) {
       all += all_[static_cast<std::size_t>(v)];
       passed += passed_[static_cast<std::size_t>(v)];
     }
@@ -96,7 +107,25 @@ class BeamSums {
   }
 
  private:
+  /// As many pixels as every SIMD unit takes at once.
+  static constexpr int kLanes = 4;
+  using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
+  static_assert(2 * kLanes <= BeamImage::kPadding, "reads that far beyond a row");
+
+  static void add(const BeamImage::Pixel* pixels, const Lanes& behind, Lanes& all, Lanes& passed) {
+    Lanes lanes;
+    std::memcpy(&lanes, pixels, sizeof(lanes));
+    const Lanes counts = BeamImage::countOf(lanes);
+    all += counts;
+    passed += counts & (lanes > behind);  // a true lane has all bits set
+  }
+  static void store(const Lanes& lanes, BeamImage::Pixel* to) {
+    std::memcpy(to, &lanes, sizeof(lanes));
+  }
+
   int first_slope_ = 0;
+  int last_slope_ = -1;
+  std::vector<const BeamImage::Pixel*> rows_;
   std::vector<BeamImage::Pixel> all_;
   std::vector<BeamImage::Pixel> passed_;
 };
@@ -111,8 +140,10 @@ Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
     candidates &= ~(Bits{1} << highestBitIndex(candidates));
   }
   if (candidates == 0) return 0;
-  sums.sum(beams, view, view.firstSlope(lowestBitIndex(candidates)),
-           view.lastSlope(highestBitIndex(candidates)));
+  const int first_slope = std::max(view.firstSlope(lowestBitIndex(candidates)), beams.firstSlope());
+  const int last_slope = std::min(view.lastSlope(highestBitIndex(candidates)), beams.lastSlope());
+  if (first_slope > last_slope) return 0;
+  sums.sum(beams, view, first_slope, last_slope);
   Bits free = 0;
   for (Bits rest = candidates; rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
@@ -130,8 +161,6 @@ BeamImage::BeamImage(const VisibilityConfig& config)
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
   slope_scale_ = static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0));
   slope_pixels_ = static_cast<int>((kMaxSlope - kMinSlope) * slope_scale_) + 1;
-  pixels_.assign(
-      static_cast<std::size_t>(azimuth_pixels_) * static_cast<std::size_t>(slope_pixels_), kEmpty);
   farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
   first_slope_ = slope_pixels_;
   last_slope_ = -1;
@@ -145,8 +174,7 @@ float BeamImage::azimuthPixel(float x, float y) const {
 }
 
 void BeamImage::fill(const PlacedScan& scan) {
-  for (const std::uint32_t pixel : used_) pixels_[pixel] = kEmpty;
-  used_.clear();
+  incoming_.clear();
   std::fill(farthest_.begin(), farthest_.end(), 0);
   first_slope_ = slope_pixels_;
   last_slope_ = -1;
@@ -157,16 +185,19 @@ void BeamImage::fill(const PlacedScan& scan) {
     const int v = floorToInt(slopePixel(std::clamp(ray.z() / distance, -2.0F, 2.0F)));
     if (v < 0 || v >= slope_pixels_) continue;
     const int u = std::min(static_cast<int>(azimuthPixel(ray.x(), ray.y())), azimuth_pixels_ - 1);
-    const auto index = static_cast<std::uint32_t>(u * slope_pixels_ + v);
-    Pixel& pixel = pixels_[index];
-    const Pixel count = countOf(pixel);
-    if (count == 0) used_.push_back(index);
-    const Pixel beam = limitFor(distance) & ~kMaxCount;
-    pixel = std::min(pixel & ~kMaxCount, beam) | std::min(count + 1, kMaxCount);
-    Pixel& farthest = farthest_[static_cast<std::size_t>(u)];
-    farthest = std::max(farthest, beam | 1);
+    incoming_.push_back({static_cast<std::int16_t>(u), static_cast<std::int16_t>(v),
+                         limitFor(distance) & ~kMaxCount});
     first_slope_ = std::min(first_slope_, v);
     last_slope_ = std::max(last_slope_, v);
+  }
+  // Most sensors use a small part of the slopes: the image is then small enough for the cache.
+  const auto slopes = static_cast<std::size_t>(std::max(0, last_slope_ - first_slope_ + 1));
+  pixels_.assign(static_cast<std::size_t>(azimuth_pixels_) * slopes + kPadding, kEmpty);
+  for (const Beam& beam : incoming_) {
+    const auto u = static_cast<std::size_t>(beam.azimuth);
+    Pixel& pixel = pixels_[u * slopes + static_cast<std::size_t>(beam.slope - first_slope_)];
+    pixel = std::min(pixel & ~kMaxCount, beam.end) | std::min(countOf(pixel) + 1, kMaxCount);
+    farthest_[u] = std::max(farthest_[u], beam.end | 1);
   }
 }
 

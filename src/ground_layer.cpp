@@ -31,12 +31,6 @@ GroundLayer::GroundLayer(const GroundLayerConfig& config, double cell_height)
       cell_end_(std::min(binsIn(kBelow + cell_height, config.bin_height), bins_)),
       above_end_(std::min(binsIn(kBelow + 2.0 * cell_height, config.bin_height), bins_)) {}
 
-int GroundLayer::binOf(float above_ground) const {
-  const float bin = (above_ground - bottom_) * bins_per_metre_;
-  // Written so that NaN is below.
-  return bin >= 0.0F ? static_cast<int>(std::min(bin, static_cast<float>(bins_))) : -1;
-}
-
 int GroundLayer::groundBins(const std::uint32_t* counts, bool object_above) const {
   const auto* peak = std::max_element(counts, counts + search_bins_);
   if (object_above) {

@@ -3,6 +3,7 @@
 #include "beautymap/map_cleaner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "beautymap/coarse_ground.h"
@@ -14,21 +15,37 @@ namespace beautymap {
 MapCleaner::MapCleaner(const Config& config)
     : config_((checkConfig(config), config)),
       encoding_(config.matrix),
+      height_bins_(config.matrix),
       judgement_(config),
-      map_(judgement_.fineBins()) {
-  if (config.evidence.enabled) beams_.emplace(config.visibility);
+      map_(judgement_.fineBins()) {}
+
+void MapCleaner::startAt(const Eigen::Vector3d& sensor_in_map) {
+  if (!z_origin_ && std::isfinite(sensor_in_map.z())) z_origin_ = sensor_in_map.z();
+}
+
+void MapCleaner::place(const Scan& scan, ScanView& view) const {
+  view.times = {};
+  StageClock clock(view.times);
+  view.dropped = {};
+  view.placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, view.dropped,
+                          std::move(view.placed));
+  clock.lap("placing");
 }
 
 void MapCleaner::observe(const Scan& scan) {
+  startAt(scan.sensor_in_map);
+  place(scan, view_);
+  observe(view_);
+}
+
+void MapCleaner::observe(const ScanView& view) {
+  times_.add(view.times);
   StageClock clock(times_);
-  const double z_origin = z_origin_.value_or(scan.sensor_in_map.z());
-  placed_ =
-      placeScan(scan, z_origin, config_.matrix.res_g, config_.scan, dropped_, std::move(placed_));
-  z_origin_ = z_origin;  // only now: placeScan refuses poses that are not finite
-  clock.lap("placing");
-  forEachTilePoint(map_, placed_, config_.matrix.res_g,
-                   [](Tile* tile, std::size_t column, float z) {
+  dropped_ += view.dropped;
+  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
+                   [&](Tile* tile, std::size_t column, float z) {
                      tile->lowest[column] = std::min(tile->lowest[column], z);
+                     tile->heights[column] |= height_bins_.bin(z);
                    });
   clock.lap("coarse_ground");
 }
@@ -44,10 +61,14 @@ void MapCleaner::estimateGround() {
 }
 
 void MapCleaner::encode(const Scan& scan) {
+  place(scan, view_);
+  encode(view_);
+}
+
+void MapCleaner::encode(const ScanView& view) {
+  times_.add(view.times);
   StageClock clock(times_);
-  const PlacedScan& placed = place(scan);
-  clock.lap("placing");
-  forEachTilePoint(map_, placed, config_.matrix.res_g,
+  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
                    [&](Tile* tile, std::size_t column, float z) {
                      tile->occupied[column] |= encoding_.bit(z, tile->ground[column]);
                    });
@@ -55,52 +76,90 @@ void MapCleaner::encode(const Scan& scan) {
 }
 
 void MapCleaner::compare(const Scan& scan) {
-  StageClock clock(times_);
-  const PlacedScan& placed = place(scan);
-  clock.lap("placing");
-  judgement_.countGroundPoints(map_, placed);
-  clock.lap("fine_ground");
-  const MapWindow map = windowAround(placed);
-  const BitGrid scan_bits = encodeScan(placed, map.ground, config_.matrix);
-  clock.lap("binary_encoding");
+  place(scan, view_);
+  look(view_);
+  add(view_);
+}
+
+void MapCleaner::look(ScanView& view) const {
   if (config_.evidence.enabled) {
-    gatherEvidence(placed, map, scan_bits);
+    findFree(view);
   } else {
-    findDynamic(placed, map, scan_bits);
+    findDynamic(view);
   }
 }
 
-void MapCleaner::findDynamic(const PlacedScan& scan, const MapWindow& map,
-                             const BitGrid& scan_bits) {
-  StageClock clock(times_);
-  BitGrid dynamic = compareMatrices(map.occupied, scan_bits);
-  clock.lap("matrix_comparison");
-  if (config_.restoration.enabled) {
-    keepOnly(dynamic, cellsInSight(scan, scan_bits, map, config_.matrix, config_.restoration));
-    excludeLowestBits(dynamic, map.occupied);
-    clock.lap("sight_mask");
-    restore(dynamic, cellsHidden(dynamic, scan_bits, map.ground, scan, config_.matrix));
-    clock.lap("reverse_ray_casting");
+void MapCleaner::add(const ScanView& view) {
+  times_.add(view.times);
+  if (config_.evidence.enabled) {
+    addEvidence(view);
+  } else {
+    StageClock clock(times_);
+    judgement_.countGroundPoints(map_, view.placed);
+    clock.lap("fine_ground");
+    map_.merge(view.free, &Tile::dynamic);
+    clock.lap("matrix_comparison");
   }
-  map_.merge(dynamic, &Tile::dynamic);
-  clock.lap("matrix_comparison");
 }
 
-void MapCleaner::gatherEvidence(const PlacedScan& scan, const MapWindow& map,
-                                const BitGrid& scan_bits) {
-  StageClock clock(times_);
-  const BitGrid candidates = compareMatrices(map.occupied, scan_bits);
+void MapCleaner::findDynamic(ScanView& view) const {
+  StageClock clock(view.times);
+  const PlacedScan& scan = view.placed;
+  const MapWindow map = windowAround(scan);
+  view.hit = encodeScan(scan, map.ground, config_.matrix);
+  clock.lap("binary_encoding");
+  view.free = compareMatrices(map.occupied, view.hit);
   clock.lap("matrix_comparison");
-  beams_->fill(scan);
+  if (!config_.restoration.enabled) return;
+  keepOnly(view.free, cellsInSight(scan, view.hit, map, config_.matrix, config_.restoration));
+  excludeLowestBits(view.free, map.occupied);
+  clock.lap("sight_mask");
+  restore(view.free, cellsHidden(view.free, view.hit, map.ground, scan, config_.matrix));
+  clock.lap("reverse_ray_casting");
+}
+
+void MapCleaner::findFree(ScanView& view) const {
+  StageClock clock(view.times);
+  const ColumnWindow window = windowOf(view.placed);
+  const HeightGrid ground = map_.extract(window, &Tile::ground, Tile::kNoHeight);
+  view.hit = encodeScan(view.placed, ground, config_.matrix);
+  clock.lap("binary_encoding");
+  // Which cells will be occupied is known only when all scans are added.
+  BitGrid candidates(window, 0);
+  forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
+    candidates.at(x, y) =
+        height_bins_.possibleCells(tile.heights[column], tile.ground[column]) & ~view.hit.at(x, y);
+  });
+  clock.lap("matrix_comparison");
+  if (!view.beams) view.beams.emplace(config_.visibility);
+  view.beams->fill(view.placed);
   clock.lap("beam_image");
-  const BitGrid seen_free =
-      cellsSeenFree(*beams_, candidates, map.ground, scan, config_.matrix, config_.visibility);
+  view.free = cellsSeenFree(*view.beams, candidates, ground, view.placed, config_.matrix,
+                            config_.visibility);
   clock.lap("beam_visibility");
-  forEachColumn(map_, candidates.window(), [&](int x, int y, Tile& tile, std::size_t column) {
-    const Bits hit = scan_bits.at(x, y);
-    const Bits free = seen_free.at(x, y);
+}
+
+void MapCleaner::addEvidence(const ScanView& view) {
+  StageClock clock(times_);
+  judgement_.countGroundPoints(map_, view.placed);
+  clock.lap("fine_ground");
+  // Points beyond the window are in the map, too, though nothing is judged there.
+  const ColumnWindow& window = view.hit.window();
+  TileCursor<TileMap> tile_of(map_);
+  forEachColumnPoint(view.placed, config_.matrix.res_g, [&](int x, int y, float z) {
+    const ColumnIndex index{view.placed.anchor.x + x, view.placed.anchor.y + y};
+    if (window.contains(index)) return;
+    Tile& tile = *tile_of(index);
+    const auto column = static_cast<std::size_t>(TileMap::indexInTile(index));
+    tile.occupied[column] |= encoding_.bit(z, tile.ground[column]);
+  });
+  clock.lap("binary_encoding");
+  forEachColumn(map_, window, [&](int x, int y, Tile& tile, std::size_t column) {
+    const Bits hit = view.hit.at(x, y);
+    const Bits free = view.free.at(x, y);
     if ((hit | free) == 0) return;
     if (tile.evidence.empty()) tile.evidence.resize(Tile::kColumns);
+    tile.occupied[column] |= hit;
     tile.evidence[column].observe(hit, free);
   });
   clock.lap("evidence");
@@ -120,31 +179,33 @@ void MapCleaner::segmentGround() {
 }
 
 std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
-  StageClock clock(times_);
-  const PlacedScan& placed = place(scan);
-  clock.lap("placing");
-  std::vector<PointClass> classes(scan.cloud.size(), PointClass::kDropped);
-  auto source = placed.source_index.begin();
-  forEachTilePoint(std::as_const(map_), placed, config_.matrix.res_g,
+  std::vector<PointClass> classes;
+  place(scan, view_);
+  classify(view_, classes);
+  addTimes(view_);
+  return classes;
+}
+
+void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) const {
+  StageClock clock(view.times);
+  classes.assign(view.placed.cloud_size, PointClass::kDropped);
+  auto source = view.placed.source_index.begin();
+  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
                    [&](const Tile* tile, std::size_t column, float z) {
                      const bool dynamic = tile && judgement_.isDynamic(*tile, column, z);
                      classes[*source++] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
                    });
   clock.lap("classifying");
-  return classes;
 }
 
-const PlacedScan& MapCleaner::place(const Scan& scan) {
-  DroppedPoints counted_while_observing;
-  placed_ = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, counted_while_observing,
-                      std::move(placed_));
-  return placed_;
+ColumnWindow MapCleaner::windowOf(const PlacedScan& scan) const {
+  const int half =
+      std::max(1, static_cast<int>(0.5 * config_.matrix.roi_size / config_.matrix.res_g));
+  return {{scan.anchor.x - half, scan.anchor.y - half}, 2 * half + 1};
 }
 
 MapWindow MapCleaner::windowAround(const PlacedScan& scan) const {
-  const int half =
-      std::max(1, static_cast<int>(0.5 * config_.matrix.roi_size / config_.matrix.res_g));
-  const ColumnWindow window{{scan.anchor.x - half, scan.anchor.y - half}, 2 * half + 1};
+  const ColumnWindow window = windowOf(scan);
   return {map_.extract(window, &Tile::occupied, Bits{0}),
           map_.extract(window, &Tile::ground, Tile::kNoHeight),
           map_.extract(window, &Tile::below_ground, std::uint8_t{0})};

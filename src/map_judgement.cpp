@@ -13,7 +13,8 @@ namespace beautymap {
 MapJudgement::MapJudgement(const Config& config)
     : config_(config),
       encoding_(config.matrix),
-      ground_layer_(config.ground_layer, config.matrix.res_h) {}
+      ground_layer_(config.ground_layer, config.matrix.res_h),
+      below_ground_(static_cast<float>(config.matrix.bits_below * config.matrix.res_h)) {}
 
 int MapJudgement::fineBins() const {
   return usesGroundLayer() ? ground_layer_.bins()
@@ -91,9 +92,7 @@ int MapJudgement::groundBit(const Tile& tile, std::size_t column) const {
 
 int MapJudgement::groundBin(const Tile& tile, std::size_t column, float z) const {
   if (usesGroundLayer()) {
-    const float ground =
-        tile.ground[column] + static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
-    const int bin = ground_layer_.binOf(z - ground);
+    const int bin = ground_layer_.binOf(z - tile.ground[column] - below_ground_);
     return bin < ground_layer_.bins() ? bin : -1;
   }
   const int bit = encoding_.bitIndex(z, tile.ground[column]);

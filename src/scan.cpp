@@ -30,25 +30,28 @@ void movePoints(const Scan& scan, const ScanConfig& config, PlacedScan& placed,
   const float min_squared = static_cast<float>(config.min_range * config.min_range);
   const float max_squared = static_cast<float>(config.max_range * config.max_range);
   const std::size_t size = scan.cloud.size();
+  placed.cloud_size = size;
   placed.points.resize(size);
   placed.source_index.resize(size);
   std::size_t used = 0;
-  Eigen::Vector4f sensor = Eigen::Vector4f::Zero();
-  sensor.head<3>() = placed.sensor;
+  // Three coordinates, or four of which the last is 0: then a point is one SSE register.
+  using Moved = decltype(move(scan.cloud[0]));
+  Moved sensor = Moved::Zero();
+  sensor.template head<3>() = placed.sensor;
   for (std::size_t i = 0; i < size; ++i) {
-    const Eigen::Vector4f p(scan.cloud[i].x, scan.cloud[i].y, scan.cloud[i].z, 0.0F);
-    const Eigen::Vector4f moved = move(p);
+    const pcl::PointXYZ& p = scan.cloud[i];
+    const Moved moved = move(p);
     const float squared = (moved - sensor).squaredNorm();
-    placed.points[used] = moved.head<3>();
+    placed.points[used] = moved.template head<3>();
     placed.source_index[used] = static_cast<std::uint32_t>(i);
     // False for NaN, too. Without short circuits: each would be a branch.
-    const int zero = static_cast<int>(p.x() == 0.0F) & static_cast<int>(p.y() == 0.0F) &
-                     static_cast<int>(p.z() == 0.0F);
+    const int zero = static_cast<int>(p.x == 0.0F) & static_cast<int>(p.y == 0.0F) &
+                     static_cast<int>(p.z == 0.0F);
     const int usable = static_cast<int>(squared >= min_squared) &
                        static_cast<int>(squared <= max_squared) & static_cast<int>(squared > 0.0F) &
                        (1 - zero);
     used += static_cast<std::size_t>(usable);
-    if (usable == 0) countDropped(p.head<3>(), squared, min_squared, dropped);
+    if (usable == 0) countDropped(p.getVector3fMap(), squared, min_squared, dropped);
   }
   placed.points.resize(used);
   placed.source_index.resize(used);
@@ -78,20 +81,20 @@ PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const Scan
   if (scan.T_map_cloud.linear().isIdentity(0.0)) {
     // A registered cloud may hold large coordinates: what is large in float is subtracted in
     // double.
-    Eigen::Vector4d shift_d = Eigen::Vector4d::Zero();
-    shift_d.head<3>() = shift;
-    movePoints(scan, config, placed, dropped, [&](const Eigen::Vector4f& p) {
-      return Eigen::Vector4f((p.cast<double>() + shift_d).cast<float>());
+    const double x = shift.x(), y = shift.y(), z = shift.z();
+    movePoints(scan, config, placed, dropped, [&](const pcl::PointXYZ& p) {
+      return Eigen::Vector3f(static_cast<float>(static_cast<double>(p.x) + x),
+                             static_cast<float>(static_cast<double>(p.y) + y),
+                             static_cast<float>(static_cast<double>(p.z) + z));
     });
   } else {
-    // Four floats at a time are one SSE operation, three are not.
     Eigen::Matrix4f transform = Eigen::Matrix4f::Zero();
     transform.topLeftCorner<3, 3>() = scan.T_map_cloud.linear().cast<float>();
     transform.topRightCorner<3, 1>() = shift.cast<float>();
     const Eigen::Vector4f x = transform.col(0), y = transform.col(1), z = transform.col(2),
                           t = transform.col(3);
-    movePoints(scan, config, placed, dropped, [&](const Eigen::Vector4f& p) {
-      return Eigen::Vector4f(x * p.x() + y * p.y() + z * p.z() + t);
+    movePoints(scan, config, placed, dropped, [&](const pcl::PointXYZ& p) {
+      return Eigen::Vector4f(x * p.x + y * p.y + z * p.z + t);
     });
   }
   return placed;

@@ -21,7 +21,10 @@ class BeamImage {
   /// One pixel in one word, so that a point touches one cache line: the nearest horizontal distance
   /// at which a beam ended [mm] above its lowest byte, which counts the beams up to 255.
   using Pixel = std::int32_t;
-  static Pixel countOf(Pixel pixel) { return pixel & kMaxCount; }
+  template <typename Pixels>
+  static Pixels countOf(Pixels pixels) {
+    return pixels & kMaxCount;
+  }
   /// A pixel is greater than this if all its beams ended farther away.
   static Pixel limitFor(float distance_m) {
     return static_cast<Pixel>(std::min(distance_m, kFarthest) * 1000.0F) << kCountBits | kMaxCount;
@@ -41,15 +44,17 @@ class BeamImage {
   int azimuthPixels() const { return azimuth_pixels_; }
   int slopePixels() const { return slope_pixels_; }
 
-  /// The pixels of one azimuth, by slope.
-  const Pixel* row(int azimuth) const {
-    return pixels_.data() + static_cast<std::ptrdiff_t>(azimuth) * slope_pixels_;
-  }
-  /// The farthest beam of one azimuth, as a pixel.
-  Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
-  /// The lowest and highest pixel of slope that any beam has; first > last without beams.
+  /// The lowest and highest pixel of slope that any beam has; first > last without beams. The image
+  /// is only stored between them.
   int firstSlope() const { return first_slope_; }
   int lastSlope() const { return last_slope_; }
+  /// The pixels of one azimuth from firstSlope() on. Reading up to kPadding more is harmless.
+  const Pixel* row(int azimuth) const {
+    return pixels_.data() + static_cast<std::ptrdiff_t>(azimuth) * (last_slope_ - first_slope_ + 1);
+  }
+  static constexpr int kPadding = 8;
+  /// The farthest beam of one azimuth, as a pixel.
+  Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
 
  private:
   static constexpr int kCountBits = 8;
@@ -66,7 +71,14 @@ class BeamImage {
   int last_slope_;
   std::vector<Pixel> pixels_;
   std::vector<Pixel> farthest_;
-  std::vector<std::uint32_t> used_;  ///< pixels with beams: only these are cleared
+
+  /// A beam on its way into the image.
+  struct Beam {
+    std::int16_t azimuth;
+    std::int16_t slope;
+    Pixel end;
+  };
+  std::vector<Beam> incoming_;
 };
 
 /// The candidates that the scan saw free: beams went through the cell's angular footprint, and

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "beautymap/config.h"
@@ -19,7 +20,11 @@ class GroundLayer {
 
   int bins() const { return bins_; }
   /// The bin of a height above the column's coarse ground [m]; -1 below, bins() above all of them.
-  int binOf(float above_ground) const;
+  int binOf(float above_ground) const {
+    const float bin = (above_ground - bottom_) * bins_per_metre_;
+    // Written so that NaN is below.
+    return bin >= 0.0F ? static_cast<int>(std::min(bin, static_cast<float>(bins_))) : -1;
+  }
 
   /// How many bins, from below, are ground: up to where the counts around the peak have fallen off.
   /// 0 without points. Where an object was above the ground cell its points can outnumber those of

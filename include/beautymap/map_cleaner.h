@@ -23,15 +23,29 @@ enum class PointClass : std::uint8_t {
   kDropped,  ///< not part of the map: not finite, zero, or out of range
 };
 
+/// What one scan says about the map, and the memory to find it out; used again for other scans.
+struct ScanView {
+  PlacedScan placed;
+  DroppedPoints dropped;
+  BitGrid hit;  ///< cells around the sensor that the scan hit
+  /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
+  BitGrid free;
+  StageTimes times;
+  std::optional<BeamImage> beams;  ///< large, and only evidence needs it
+};
+
 /// Removes what moved from a map that is given as registered scans: BeautyMap as published (RA-L
-/// 2024). The same scans are handed in once per phase, in any order within a phase (the height of
-/// the first scan's sensor is where z counts from, so another order may round points on a cell's
-/// border otherwise):
+/// 2024), or by evidence over all scans. The same scans are handed in once per phase:
 ///
-///   observe(scan)...   lowest heights      -> estimateGround()
-///   encode(scan)...    M_map
-///   compare(scan)...   M_dyn of each scan  -> segmentGround()
+///   observe(scan)...   heights of the columns       -> estimateGround()
+///   encode(scan)...    M_map; not with evidence, which finds it while comparing
+///   compare(scan)...   M_dyn or evidence per scan   -> segmentGround()
 ///   classify(scan)     static or dynamic, per point
+///
+/// Evidence needs compare() in the order of time. Otherwise any order will do within a phase (the
+/// height of the first scan's sensor is where z counts from, so another order may round points on a
+/// cell's border otherwise). What a phase computes without changing the map, place(), look() and
+/// classify(), is const and may run in threads beside the phase's other calls.
 ///
 /// Memory grows with the mapped area, not with the number of points.
 class MapCleaner {
@@ -43,12 +57,25 @@ class MapCleaner {
   // unchanged.
   void observe(const Scan& scan);
   void estimateGround();
+  bool needsEncoding() const { return !config_.evidence.enabled; }
   void encode(const Scan& scan);
   void compare(const Scan& scan);
   void segmentGround();
 
   /// One class per point of the scan's cloud.
   std::vector<PointClass> classify(const Scan& scan);
+
+  // The same in parts. place() is the first one of each phase; startAt() must know the first
+  // scan's sensor before.
+  void startAt(const Eigen::Vector3d& sensor_in_map);
+  void place(const Scan& scan, ScanView& view) const;
+  void observe(const ScanView& view);
+  void encode(const ScanView& view);
+  void look(ScanView& view) const;
+  void add(const ScanView& view);
+  void classify(ScanView& view, std::vector<PointClass>& classes) const;
+  /// Counts a view's times, which observe(), encode() and add() do by themselves.
+  void addTimes(const ScanView& view) { times_.add(view.times); }
 
   const Config& config() const { return config_; }
   const TileMap& map() const { return map_; }
@@ -60,20 +87,21 @@ class MapCleaner {
   double zOrigin() const { return z_origin_.value_or(0.0); }
 
  private:
-  const PlacedScan& place(const Scan& scan);
+  ColumnWindow windowOf(const PlacedScan& scan) const;
   MapWindow windowAround(const PlacedScan& scan) const;
   /// The published judgement of one scan: every candidate it leaves is dynamic.
-  void findDynamic(const PlacedScan& scan, const MapWindow& map, const BitGrid& scan_bits);
+  void findDynamic(ScanView& view) const;
   /// What one scan saw, for a judgement over all scans.
-  void gatherEvidence(const PlacedScan& scan, const MapWindow& map, const BitGrid& scan_bits);
+  void findFree(ScanView& view) const;
+  void addEvidence(const ScanView& view);
 
   Config config_;
   BinaryEncoding encoding_;
+  HeightBins height_bins_;
   MapJudgement judgement_;
   TileMap map_;
-  std::optional<BeamImage> beams_;  ///< large, and only evidence needs it
   DroppedPoints dropped_;
-  PlacedScan placed_;  ///< the scan at hand; a member so that its memory is used again
+  ScanView view_;  ///< of the scan at hand; a member so that its memory is used again
   StageTimes times_;
   std::optional<double> z_origin_;
 };

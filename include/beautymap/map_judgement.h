@@ -48,6 +48,7 @@ class MapJudgement {
   Config config_;
   BinaryEncoding encoding_;
   GroundLayer ground_layer_;
+  float below_ground_;  ///< depth of bit 0 below the coarse ground [m]
 };
 
 /// All tiles of a map.

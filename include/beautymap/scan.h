@@ -6,6 +6,7 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct DroppedPoints {
   std::uint64_t too_near = 0;
   std::uint64_t too_far = 0;
   std::uint64_t total() const { return non_finite + zero + too_near + too_far; }
+  DroppedPoints& operator+=(const DroppedPoints& other) {
+    non_finite += other.non_finite;
+    zero += other.zero;
+    too_near += other.too_near;
+    too_far += other.too_far;
+    return *this;
+  }
 };
 
 /// A scan's usable points, relative to a map column near the sensor, so that float32 keeps its
@@ -39,6 +47,7 @@ struct PlacedScan {
   Eigen::Vector3f sensor;                   ///< [m]
   std::vector<Eigen::Vector3f> points;      ///< [m]
   std::vector<std::uint32_t> source_index;  ///< of each point in the scan's cloud
+  std::size_t cloud_size = 0;               ///< points of the scan's cloud, usable or not
 };
 
 /// The column that holds a position of the map frame [m].

@@ -21,6 +21,9 @@ class StageTimes {
     }
     stages_.emplace_back(stage, ms);
   }
+  void add(const StageTimes& other) {
+    for (const auto& entry : other.stages_) add(entry.first, entry.second);
+  }
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
 
  private:

@@ -36,6 +36,7 @@ struct Tile {
   std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
   std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
+  std::array<Bits, kColumns> heights{};               ///< HeightBins of all points
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
   std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
   std::array<Bits, kColumns> strong{};   ///< those of the suspected cells with strong evidence

@@ -4,6 +4,14 @@
 
 #include <sys/resource.h>
 
+#if __has_include(<tbb/parallel_pipeline.h>)
+#include <tbb/parallel_pipeline.h>
+using Mode = tbb::filter_mode;
+#else  // before oneTBB
+#include <tbb/pipeline.h>
+using Mode = tbb::filter;
+#endif
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -32,27 +40,40 @@ constexpr double kMaxFloat32Coordinate = 8192.0;
 // Points that are shown to the evaluator at once; they fit into the cache.
 constexpr std::size_t kScoredBlock = 1 << 13;
 
-/// A scan as the source gave it, and as the core takes it.
+/// A scan as the source gave it, as the core takes it, and what it says.
 struct ReadScan {
   SourceScan source;
   Scan scan;
+  ScanView view;
+  std::string unusable;  ///< why, or empty
   // To be written:
   std::vector<PointClass> classes;
   std::vector<bool> moving;    ///< the labels; empty without
   pcl::PCLPointCloud2 in_map;  ///< all fields, x y z in the map frame
 };
 
-/// Calls use(scan) for each scan that read(scan) delivers, while another thread reads the next one.
-template <typename Read, typename Use>
-void readAhead(Read read, Use use) {
-  ReadScan current, next;
-  bool more = read(current);
-  while (more) {
-    auto reading = std::async(std::launch::async, [&] { return read(next); });
-    use(current);
-    more = reading.get();
-    std::swap(current, next);
-  }
+/// Calls read(scan) until it returns false, work(scan) and use(scan) for each scan. read and use
+/// see the scans one by one in their order; work is done for several at once.
+template <typename Read, typename Work, typename Use>
+void runPipeline(Read read, Work work, Use use) {
+  // A scan's memory is used again for a later one: no more scans than these are on their way, and
+  // they end in their order.
+  std::vector<ReadScan> scans(std::thread::hardware_concurrency() + 1);
+  std::size_t next = 0;
+  const auto input = [&](tbb::flow_control& control) -> ReadScan* {
+    ReadScan& scan = scans[next++ % scans.size()];
+    if (!read(scan)) control.stop();
+    return &scan;
+  };
+  tbb::parallel_pipeline(
+      scans.size(), tbb::make_filter<void, ReadScan*>(Mode::serial_in_order, input) &
+                        tbb::make_filter<ReadScan*, ReadScan*>(Mode::parallel,
+                                                               [&](ReadScan* scan) {
+                                                                 work(*scan);
+                                                                 return scan;
+                                                               }) &
+                        tbb::make_filter<ReadScan*, void>(Mode::serial_in_order,
+                                                          [&](ReadScan* scan) { use(*scan); }));
 }
 
 /// The smallest box around all scans' points, horizontally, and their largest coordinate [m].
@@ -126,9 +147,13 @@ class OfflineRun {
     const auto start = std::chrono::steady_clock::now();
     observe();
     cleaner_.estimateGround();
-    const auto nothing = [](ReadScan&) {};
-    passOverSpool("encoding", nothing, [&](const ReadScan& s) { cleaner_.encode(s.scan); });
-    passOverSpool("comparing", nothing, [&](const ReadScan& s) { cleaner_.compare(s.scan); });
+    if (cleaner_.needsEncoding()) {
+      passOverSpool(
+          "encoding", [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.encode(s.view); });
+    }
+    passOverSpool(
+        "comparing", [&](ReadScan& s) { cleaner_.look(s.view); },
+        [&](const ReadScan& s) { cleaner_.add(s.view); });
     cleaner_.segmentGround();
     write();
     for (const auto& stage : cleaner_.times().stages())
@@ -143,8 +168,8 @@ class OfflineRun {
 
  private:
   void observe();
-  template <typename Prepare, typename Use>
-  void passOverSpool(const std::string& name, Prepare prepare, Use use);
+  template <typename Work, typename Use>
+  void passOverSpool(const std::string& name, Work work, Use use);
   void write();
   void prepareWriting(ReadScan& read);
   void writeScan(const ReadScan& read);
@@ -171,11 +196,20 @@ void OfflineRun::observe() {
     Skipped& skipped = report_.skipped_scans[reason];
     if (skipped.count++ == 0) skipped.example = example;
   };
-  readAhead(
+  runPipeline(
       [&](ReadScan& read) {
         if (!source_.next(read.source)) return false;
-        convertScan(read.source, read.scan);
+        cleaner_.startAt(read.source.T_map_sensor.translation());
         return true;
+      },
+      [&](ReadScan& read) {
+        convertScan(read.source, read.scan);
+        try {
+          read.unusable.clear();
+          cleaner_.place(read.scan, read.view);
+        } catch (const std::invalid_argument& e) {
+          read.unusable = e.what();
+        }
       },
       [&](const ReadScan& read) {
         progress_.step();
@@ -183,12 +217,11 @@ void OfflineRun::observe() {
           skip("fields differ from the first scan's", "scan " + std::to_string(report_.scans));
           return;
         }
-        try {
-          cleaner_.observe(read.scan);
-        } catch (const std::invalid_argument& e) {
-          skip("unusable pose", e.what());
+        if (!read.unusable.empty()) {
+          skip("unusable pose", read.unusable);
           return;
         }
+        cleaner_.observe(read.view);
         StageClock clock(report_.stages);
         spool_.append(read.source);
         clock.lap("spool");
@@ -206,22 +239,21 @@ void OfflineRun::observe() {
   throw InputError("no scan can be used" + (reasons.empty() ? ": the input is empty" : reasons));
 }
 
-/// Calls use(scan) for each scan, while another thread reads and prepares the next one.
-template <typename Prepare, typename Use>
-void OfflineRun::passOverSpool(const std::string& name, Prepare prepare, Use use) {
+/// Calls work(scan), in threads, and use(scan), in order, for each scan when it is placed.
+template <typename Work, typename Use>
+void OfflineRun::passOverSpool(const std::string& name, Work work, Use use) {
   progress_.begin(name, spool_.size());
   spool_.rewind();
-  readAhead(
-      [&](ReadScan& read) {
-        if (!spool_.next(read.source)) return false;
-        convertScan(read.source, read.scan);
-        prepare(read);
-        return true;
-      },
-      [&](const ReadScan& read) {
-        use(read);
-        progress_.step();
-      });
+  runPipeline([&](ReadScan& read) { return spool_.next(read.source); },
+              [&](ReadScan& read) {
+                convertScan(read.source, read.scan);
+                cleaner_.place(read.scan, read.view);
+                work(read);
+              },
+              [&](const ReadScan& read) {
+                use(read);
+                progress_.step();
+              });
 }
 
 void OfflineRun::write() {
@@ -245,14 +277,14 @@ void OfflineRun::write() {
   clock.lap("pictures");
 }
 
-/// What takes about as long as writing itself, and so is done beside it.
 void OfflineRun::prepareWriting(ReadScan& read) {
-  read.classes = cleaner_.classify(read.scan);
+  cleaner_.classify(read.view, read.classes);
   if (labelled_) read.moving = movingPoints(read.source.cloud, source_);
   moveCloud(read.source.cloud, read.source.T_map_cloud, report_.float64_coordinates, read.in_map);
 }
 
 void OfflineRun::writeScan(const ReadScan& read) {
+  cleaner_.addTimes(read.view);
   StageClock clock(report_.stages);
   output_layout_.fields = read.in_map.fields;
   output_layout_.point_step = read.in_map.point_step;

@@ -59,7 +59,9 @@ TEST(BeamImage, ADirectionJustBelowTheFirstLiesInAPixel) {
   beams.fill(test::placedScan({0, 0}, {0, 0, 0}, {{20.0, -1e-9, 0.0}, {20.0, 1e-9, 0.0}}));
   int all = 0;
   for (const int u : {0, beams.azimuthPixels() - 1}) {
-    for (int v = 0; v < beams.slopePixels(); ++v) all += BeamImage::countOf(beams.row(u)[v]);
+    for (int v = beams.firstSlope(); v <= beams.lastSlope(); ++v) {
+      all += BeamImage::countOf(beams.row(u)[v - beams.firstSlope()]);
+    }
   }
   EXPECT_EQ(all, 2);
 }
@@ -67,8 +69,10 @@ TEST(BeamImage, ADirectionJustBelowTheFirstLiesInAPixel) {
 void expectEqual(const BeamImage& a, const BeamImage& b) {
   ASSERT_EQ(a.azimuthPixels(), b.azimuthPixels());
   ASSERT_EQ(a.slopePixels(), b.slopePixels());
+  ASSERT_EQ(a.firstSlope(), b.firstSlope());
+  ASSERT_EQ(a.lastSlope(), b.lastSlope());
   for (int u = 0; u < a.azimuthPixels(); ++u) {
-    for (int v = 0; v < a.slopePixels(); ++v) {
+    for (int v = 0; v <= a.lastSlope() - a.firstSlope(); ++v) {
       ASSERT_EQ(a.row(u)[v], b.row(u)[v]) << u << ", " << v;
     }
     ASSERT_EQ(a.farthest(u), b.farthest(u));
@@ -104,7 +108,7 @@ TEST(BeamImage, APixelHoldsItsBeamsAndTheNearestReturn) {
       {8, 0.01, 0}, {4, 0.005, 0}, {16, 0.02, 0}, {0.3, 0, 0}};
   beams.fill(test::placedScan({0, 0}, {0, 0, 0}, points));
   const int v = floorToInt(beams.slopePixel(0.0F));
-  const BeamImage::Pixel pixel = beams.row(0)[v];
+  const BeamImage::Pixel pixel = beams.row(0)[v - beams.firstSlope()];
   EXPECT_EQ(BeamImage::countOf(pixel), 3);
   EXPECT_GT(pixel, BeamImage::limitFor(3.998F));
   EXPECT_LT(pixel, BeamImage::limitFor(4.002F));

@@ -3,6 +3,7 @@
 #include "beautymap/offline/offline_cleaner.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -41,7 +42,8 @@ struct Progress {
   std::vector<std::size_t> steps;
 };
 
-OfflineReport run(ScanSource& source, const OfflineOptions& options, Progress* told = nullptr) {
+OfflineReport run(ScanSource& source, const OfflineOptions& options, Progress* told = nullptr,
+                  const Config& config = testConfig()) {
   ProgressListener listener;
   listener.begin = [&](const std::string& pass, std::size_t) {
     if (told) told->passes.push_back(pass), told->steps.push_back(0);
@@ -49,7 +51,7 @@ OfflineReport run(ScanSource& source, const OfflineOptions& options, Progress* t
   listener.step = [&] {
     if (told) ++told->steps.back();
   };
-  return cleanOffline(source, testConfig(), options, listener);
+  return cleanOffline(source, config, options, listener);
 }
 
 OfflineOptions into(const OutputFolder& folder) {
@@ -232,6 +234,23 @@ TEST(OfflineCleaner, TheSameInputGivesTheSameBytes) {
   for (const char* name :
        {"cleaned.pcd", "dynamic.pcd", "before.png", "after.png", "matrix.png", "mistakes.png"}) {
     EXPECT_EQ(test::bytesOf(first.file(name)), test::bytesOf(second.file(name))) << name;
+  }
+}
+
+TEST(OfflineCleaner, AnyNumberOfThreadsGivesTheSameBytes) {
+  for (const bool evidence : {false, true}) {
+    Config config = testConfig();
+    config.evidence.enabled = evidence;
+    const OutputFolder one, several;
+    for (const OutputFolder* folder : {&one, &several}) {
+      const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                        folder == &one ? 1 : 4);
+      MemorySource source(test::sourceDrive(5));
+      run(source, into(*folder), nullptr, config);
+    }
+    EXPECT_FALSE(test::bytesOf(one.file("dynamic.pcd")).empty());
+    EXPECT_EQ(test::bytesOf(one.file("cleaned.pcd")), test::bytesOf(several.file("cleaned.pcd")));
+    EXPECT_EQ(test::bytesOf(one.file("dynamic.pcd")), test::bytesOf(several.file("dynamic.pcd")));
   }
 }
 
