@@ -62,6 +62,7 @@ void findGroundLayers(Tile& tile, const GroundLayer& layer, int ground_bit,
                       const EvidenceConfig& evidence) {
   const auto bins = static_cast<std::size_t>(layer.bins());
   for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
+    if (tile.dynamic[i] == 0) continue;
     const std::uint32_t* counts = tile.fine_counts.data() + i * bins;
     const bool object_above = (tile.dynamic[i] >> (ground_bit + 1) & 1) != 0;
     const bool is_ground = !object_above || !tile.evidence[i].isStrong(ground_bit, evidence) ||

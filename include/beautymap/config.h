@@ -204,6 +204,27 @@ struct AgreementConfig {
   }
 };
 
+/// Of a map that is cleaned while it grows (the node); a replay does not use it.
+struct OnlineConfig {
+  double map_voxel = 0.1;
+  double radius = 0.0;
+  double free_height = 4.0;
+  double ground_drift = 0.1;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("map_voxel", map_voxel, 0.0, 10.0, "m",
+      "the map keeps the first point in each cube of this side; 0: every point");
+    v("radius", radius, 0.0, 100000.0, "m",
+      "tiles farther from the sensor are written to disk until it comes back; 0: all stay in "
+      "memory");
+    v("free_height", free_height, 0.0, 100.0, "m",
+      "up to that height above ground it is remembered which empty cells were seen free");
+    v("ground_drift", ground_drift, 0.0, 1.0, "m",
+      "a column's cells move when its ground does by more than that");
+  }
+};
+
 /// Everything that decides what is removed. Defaults here equal config/default.yaml.
 struct Config {
   ScanConfig scan;
@@ -215,6 +236,7 @@ struct Config {
   VisibilityConfig visibility;
   EvidenceConfig evidence;
   AgreementConfig agreement;
+  OnlineConfig online;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -227,6 +249,7 @@ struct Config {
     v.group("visibility", visibility);
     v.group("evidence", evidence);
     v.group("agreement", agreement);
+    v.group("online", online);
   }
 };
 

@@ -27,10 +27,12 @@ class MapJudgement {
 
   /// Marks the cells that their own evidence holds for dynamic (Tile::suspected, Tile::strong).
   void judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// The same for some cells of one column, which has evidence.
+  void judgeEvidence(Tile& tile, std::size_t column, Bits cells) const;
   /// Tile::dynamic: the suspected cells that their neighbours support. The tiles beside those that
   /// judgeEvidence changed depend on them, too: see withNeighbours().
   void judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
-  /// Divides the columns' ground cells into ground and object points.
+  /// Divides the ground cells of columns with dynamic cells into ground and object points.
   void segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
 
   /// Whether a point of a column is removed.

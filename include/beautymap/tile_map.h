@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -46,6 +47,11 @@ struct Tile {
       static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
   std::vector<ColumnEvidence> evidence;    ///< empty until a scan is compared
   std::vector<std::uint32_t> fine_counts;  ///< points per fine bin of the ground cell
+
+  // Of maps that grow (OnlineMap).
+  std::bitset<kColumns> stale_ground;  ///< columns whose ground must be estimated again
+  bool unsettled = false;              ///< cells changed since their agreement was judged
+  std::uint64_t revision = 0;  ///< becomes another one when points may be judged differently
 };
 
 /// The map's matrix: unbounded, in tiles that exist where points are.

@@ -272,7 +272,7 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   map.forEachTile([&](ColumnIndex, Tile& tile) {
     tile.evidence.resize(Tile::kColumns);
     for (std::size_t i = 0; i < tile.dynamic.size(); ++i) {
-      tile.dynamic[i] = random.chance(0.5) ? Bits{1} << (kGroundBit + 1) : 0;
+      tile.dynamic[i] = Bits{1} << (kGroundBit + random.integer(1, 2));
       tile.evidence[i].observe(Bits{1} << kGroundBit, 0);
       for (int free = random.integer(0, 3); free > 0; --free) {
         tile.evidence[i].observe(0, Bits{1} << kGroundBit);
