@@ -68,6 +68,7 @@ class TileMap {
   }
 
   Tile& tileAt(ColumnIndex tile);
+  void erase(ColumnIndex tile) { tiles_.erase(keyOf(tile)); }
   const Tile* findTile(ColumnIndex tile) const;
   Tile* findTile(ColumnIndex tile) {
     return const_cast<Tile*>(static_cast<const TileMap*>(this)->findTile(tile));
