@@ -268,6 +268,9 @@ struct ParameterInfo {
 /// range.
 Config loadConfig(const std::string& path);
 
+/// The same from YAML text.
+Config parseConfig(const std::string& yaml);
+
 /// Sets one parameter from "group.name=value"; contradictions are left to checkConfig(). @throws
 /// ConfigError
 void setParameter(Config& config, const std::string& assignment);

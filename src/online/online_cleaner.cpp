@@ -78,13 +78,13 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
   return classes;
 }
 
-void OnlineCleaner::finish(const SourceScan& scan) {
+void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
   const pcl::PCLPointCloud2 in_map = moveCloud(scan.cloud, scan.T_map_cloud, float64_);
   ++scans_waiting_;
   const std::lock_guard<std::mutex> lock(mutex_);
   --scans_waiting_;
   points_.add(map_.placed(), in_map);
-  map_.addSeenFree();
+  if (see_free) map_.addSeenFree();
   map_.settle();
   storeFar(scan.T_map_sensor.translation());
 }
@@ -270,6 +270,28 @@ StageTimes OnlineCleaner::times() const {
   return map_.times();
 }
 
+void thinRecords(std::vector<std::uint8_t>& records, const pcl::PCLPointCloud2& layout,
+                 double voxel_m) {
+  if (voxel_m <= 0.0 || records.empty()) return;
+  pcl::PCLPointCloud2 cloud = layout;
+  cloud.data = std::move(records);
+  cloud.width = static_cast<std::uint32_t>(cloud.data.size() / layout.point_step);
+  const PositionReader position(cloud);
+  VoxelSet voxels;
+  records.clear();
+  for (std::size_t i = 0; i < cloud.width; ++i) {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
+    const Eigen::Array3d cell = (position(i).array() / voxel_m).floor();
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      key = key << 21 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis])) & kMask);
+    }
+    if (!voxels.insert(key)) continue;
+    const std::uint8_t* record = cloud.data.data() + i * layout.point_step;
+    records.insert(records.end(), record, record + layout.point_step);
+  }
+}
+
 std::pair<std::uint64_t, std::uint64_t> savePoints(const OnlineCleaner& cleaner,
                                                    const std::string& cleaned_path,
                                                    const std::string& removed_path,
@@ -277,25 +299,10 @@ std::pair<std::uint64_t, std::uint64_t> savePoints(const OnlineCleaner& cleaner,
   const pcl::PCLPointCloud2 layout = cleaner.layout();
   if (layout.fields.empty()) throw InputError("the map is empty: no scan has been added yet");
   PcdStreamWriter cleaned(cleaned_path, layout), removed(removed_path, layout);
-  const auto write = [&](const std::vector<std::uint8_t>& records, PcdStreamWriter& writer) {
-    pcl::PCLPointCloud2 cloud = layout;
-    cloud.data = records;
-    cloud.width = static_cast<std::uint32_t>(records.size() / layout.point_step);
-    cloud.row_step = static_cast<std::uint32_t>(records.size());
-    const PositionReader position(cloud);
-    VoxelSet voxels;
-    for (std::size_t i = 0; i < cloud.width; ++i) {
-      if (voxel_m > 0.0) {
-        constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;
-        const Eigen::Array3d cell = (position(i).array() / voxel_m).floor();
-        std::uint64_t key = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-          key = key << 21 |
-                (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis])) & kMask);
-        }
-        if (!voxels.insert(key)) continue;
-      }
-      writer.append(cloud.data.data() + i * layout.point_step);
+  const auto write = [&](std::vector<std::uint8_t>& records, PcdStreamWriter& writer) {
+    thinRecords(records, layout, voxel_m);
+    for (std::size_t at = 0; at < records.size(); at += layout.point_step) {
+      writer.append(records.data() + at);
     }
   };
   for (const ColumnIndex tile : cleaner.tiles()) {

@@ -38,8 +38,9 @@ class OnlineCleaner {
   /// @throws std::invalid_argument when the pose is not finite; nothing is changed then.
   const std::vector<PointClass>& add(const SourceScan& scan);
   /// What the same scan saw free; its points join the map.
+  /// @param see_free  false leaves the former out, which takes most of the time
   /// @throws InputError when a tile cannot be written to disk; it stays in memory then.
-  void finish(const SourceScan& scan);
+  void finish(const SourceScan& scan, bool see_free = true);
 
   /// The points of one tile as they are judged now.
   struct TileView {
@@ -92,6 +93,10 @@ class OnlineCleaner {
   mutable std::mutex mutex_;
   mutable std::atomic<int> scans_waiting_{0};
 };
+
+/// Keeps the first record in each voxel. @param voxel_m  side [m]; 0 keeps all
+void thinRecords(std::vector<std::uint8_t>& records, const pcl::PCLPointCloud2& layout,
+                 double voxel_m);
 
 /// Writes the cleaned points of a map to one PCD file and the removed ones to another, each at its
 /// name only when it is complete.
