@@ -33,8 +33,8 @@ void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) con
   const ColumnEvidence& evidence = tile.evidence[column];
   const Bits ever_free = evidence.everFree();
   const int ground_bit = groundBit(tile, column);
-  const Bits judged = cells & tile.occupied[column] &
-                      ~(ground_bit < 0 ? Bits{0} : Bits{1} << ground_bit);
+  const Bits judged =
+      cells & tile.occupied[column] & ~(ground_bit < 0 ? Bits{0} : Bits{1} << ground_bit);
   Bits suspected = 0, strong = 0, leaning = 0;
   for (Bits rest = judged & ever_free; rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);

@@ -46,6 +46,8 @@ void forEachArray(TileType& tile, F f) {
   f(tile.occupied.data(), sizeof(tile.occupied));
   f(tile.suspected.data(), sizeof(tile.suspected));
   f(tile.strong.data(), sizeof(tile.strong));
+  f(tile.leaning.data(), sizeof(tile.leaning));
+  f(tile.unknown.data(), sizeof(tile.unknown));
   f(tile.dynamic.data(), sizeof(tile.dynamic));
   f(tile.static_bins.data(), sizeof(tile.static_bins));
   f(tile.fine_counts.data(), tile.fine_counts.size() * sizeof(tile.fine_counts[0]));

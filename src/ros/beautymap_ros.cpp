@@ -19,6 +19,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 constexpr double kWarningPeriod = 5.0;  // [s]
+constexpr std::size_t kBehind = 3;      // scans that wait
 
 double millisecondsSince(SteadyClock::time_point begin) {
   return std::chrono::duration<double, std::milli>(SteadyClock::now() - begin).count();
@@ -191,9 +192,8 @@ void BeautyMapRos::process(const PosedCloud& posed) {
   const std::vector<PointClass>& classes = map->add(scan);
   publishSplit(posed, scan.cloud, classes);
   const double latency_ms = millisecondsSince(posed.received);
-  // What a scan saw free takes most of the time; with half a queue waiting it is better to catch up
-  // than to lose scans.
-  const bool see_free = 2 * queue_.size() < queue_.capacity();
+  // What a scan saw free takes most of the time: better to leave it out than to fall behind.
+  const bool see_free = queue_.size() < kBehind;
   map->finish(scan, see_free);
   if (log_ && !log_->append(scan)) {
     ROS_WARN_THROTTLE(kWarningPeriod,

@@ -23,7 +23,7 @@ Config dyadicConfig() {
 
 /// A tile with random cells, evidence and counts in one column, anchored at 0.
 Tile randomColumn(test::Random& random, const Config& config) {
-  Tile tile(GroundLayer(config.ground_layer).bins());
+  Tile tile(GroundLayer(config.ground_layer, config.matrix.res_h).bins());
   tile.evidence.resize(Tile::kColumns);
   tile.ground[kColumn] = 0.0F;
   tile.occupied[kColumn] = random.bits() & lowBits(config.matrix.n_bit);

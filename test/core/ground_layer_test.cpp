@@ -286,7 +286,7 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
     for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
       const std::size_t first = i * static_cast<std::size_t>(layer.bins());
       const std::uint32_t* counts = tile.fine_counts.data() + first;
-      const bool object_above = tile.dynamic[i] != 0;
+      const bool object_above = tile.dynamic[i] == Bits{1} << (kGroundBit + 1);
       const bool object =
           object_above && tile.evidence[i].freeAfter(kGroundBit) > 1 && !layer.standsOut(counts);
       ASSERT_EQ(tile.static_bins[i], object ? 0 : whole.groundBins(counts, object_above));

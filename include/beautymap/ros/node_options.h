@@ -21,7 +21,7 @@ struct NodeOptions {
   std::string map_frame = "map";
   std::string sensor_frame;
   double tf_timeout = 1.0;
-  int queue_size = 20;
+  int queue_size = 50;
   std::string output_folder = "beautymap";
   bool save_on_exit = false;
   bool reset_on_time_jump = true;
