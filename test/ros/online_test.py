@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -16,6 +17,7 @@ import unittest
 
 import numpy
 import rosbag
+import rosgraph
 import roslib.packages
 import rospy
 import rostest
@@ -241,6 +243,19 @@ class Online(unittest.TestCase):
     def test_the_node_cleans_while_a_bag_plays(self):
         with running(self.parameters()) as node:
             self.check_run(node)
+            self.check_readme()
+
+    def check_readme(self):
+        """The README's tables name the topics and services that the node has."""
+        publishers, _, services = rosgraph.Master("/online_test").getSystemState()
+        tool_made = ("set_logger_level", "get_loggers", "parameter_descriptions",
+                     "parameter_updates", "set_parameters")
+        names = {name[len(NODE) + 1:] for entries in (publishers, services)
+                 for name, nodes in entries if NODE in nodes and name.startswith(NODE + "/")}
+        names -= set(tool_made)
+        text = (PACKAGE / "README.md").read_text()
+        section = text[text.index("| topic | type |"):text.index("<details><summary>Parameters of")]
+        self.assertEqual(names, set(re.findall(r"^\| `~(\w+)`", section, re.M)))
 
     def test_the_nodelet_does_the_same(self):
         with running(self.parameters(), nodelet=True) as node:
