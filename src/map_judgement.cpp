@@ -118,12 +118,17 @@ void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const
   });
 }
 
-bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z) const {
-  const Bits dynamic = tile.dynamic[column];
+int MapJudgement::groundBins(const Tile& tile, std::size_t column, Bits dynamic) const {
+  if (!usesGroundLayer()) return tile.static_bins[column];
+  return groundBinsOf(tile, column, dynamic, ground_layer_, config_.matrix.bits_below,
+                      config_.evidence);
+}
+
+bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z, Bits dynamic,
+                             int ground_bins) const {
   const int bit = dynamic == 0 ? -1 : encoding_.bitIndex(z, tile.ground[column]);
   if (bit < 0) return false;
   const int bin = groundBin(tile, column, z);
-  const int ground_bins = tile.static_bins[column];
   if (usesGroundLayer()) {
     if (bin >= 0 && bin < ground_bins) return false;
     // What lies in the ground cell above the ground surface goes with the cell above.

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "beautymap/agreement.h"
 #include "beautymap/binary_encoding.h"
 #include "beautymap/coarse_ground.h"
 #include "beautymap/ground_anchor.h"
@@ -197,14 +198,56 @@ void OnlineMap::settle() {
   }
 }
 
+BitGrid OnlineMap::dynamicInScan() const {
+  const ColumnWindow& window = hits_.window();
+  const Bits above_ground = ~lowBits(config_.matrix.bits_below + 1);
+  EvidenceWindow cells{BitGrid(window, 0), BitGrid(window, 0), BitGrid(window, 0),
+                       BitGrid(window, 0), BitGrid(window, 0)};
+  forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
+    const Bits hit = hits_.at(x, y) & above_ground;
+    if (hit == 0) return;
+    const Bits dynamic = hit & tile.dynamic[column];
+    cells.occupied.at(x, y) = hit;
+    cells.suspected.at(x, y) = dynamic;
+    cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
+    cells.unknown.at(x, y) = hit & tile.unknown[column] & ~dynamic;
+  });
+  // The finished map waits for more evidence; of an object that has just entered, the cells that
+  // were never seen before are all that is known.
+  AgreementConfig agreement = config_.agreement;
+  agreement.min_share = config_.online.live_share;
+  agreement.join_share = 0.5 * config_.online.live_share;
+  BitGrid dynamic = std::move(cells.suspected);
+  for (int round = 0; round < config_.online.live_rounds; ++round) {
+    const BitGrid joining = joiningCells(cells, dynamic, config_.matrix.bits_below, agreement);
+    if (joining.isAll(0)) break;
+    for (int x = 0; x < window.size; ++x) {
+      for (int y = 0; y < window.size; ++y) dynamic.at(x, y) |= joining.at(x, y);
+    }
+  }
+  return dynamic;
+}
+
 void OnlineMap::classify(const Scan& scan) {
+  const BitGrid grown = dynamicInScan();
+  const ColumnIndex corner = grown.window().corner;
   classes_.assign(scan.cloud.size(), PointClass::kDropped);
   auto source = placed_.source_index.begin();
-  forEachTilePoint(std::as_const(map_), placed_, config_.matrix.res_g,
-                   [&](const Tile* tile, std::size_t column, float z) {
-                     const bool dynamic = isDynamic(*tile, column, z);
-                     classes_[*source++] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-                   });
+  TileCursor<const TileMap> tile_of(map_);
+  forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
+    const ColumnIndex index{placed_.anchor.x + x, placed_.anchor.y + y};
+    const Tile& tile = *tile_of(index);
+    const auto column = static_cast<std::size_t>(TileMap::indexInTile(index));
+    const int wx = index.x - corner.x, wy = index.y - corner.y;
+    const Bits more = grown.inside(wx, wy) ? grown.at(wx, wy) & ~tile.dynamic[column] : Bits{0};
+    const Bits dynamic = tile.dynamic[column] | more;
+    const bool is_dynamic =
+        dynamic != 0 &&
+        judgement_.isDynamic(
+            tile, column, z, dynamic,
+            more == 0 ? tile.static_bins[column] : judgement_.groundBins(tile, column, dynamic));
+    classes_[*source++] = is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
+  });
 }
 
 }  // namespace beautymap

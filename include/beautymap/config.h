@@ -210,6 +210,8 @@ struct OnlineConfig {
   double radius = 0.0;
   double free_height = 4.0;
   double ground_drift = 0.1;
+  double live_share = 0.2;
+  int live_rounds = 16;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -222,6 +224,11 @@ struct OnlineConfig {
       "up to that height above ground it is remembered which empty cells were seen free");
     v("ground_drift", ground_drift, 0.0, 1.0, "m",
       "a column's cells move when its ground does by more than that");
+    v("live_share", live_share, 0.0, 1.0, "",
+      "in the split of a scan, share of the occupied cells around that must be dynamic for an "
+      "unknown cell to be, too; half of it where the cell leans to dynamic");
+    v("live_rounds", live_rounds, 0, 100, "columns",
+      "how far an object grows so in the split of a scan");
   }
 };
 

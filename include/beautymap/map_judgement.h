@@ -37,7 +37,13 @@ class MapJudgement {
 
   /// Whether a point of a column is removed.
   /// @param z  its height [m] above the map's z origin
-  bool isDynamic(const Tile& tile, std::size_t column, float z) const;
+  bool isDynamic(const Tile& tile, std::size_t column, float z) const {
+    return isDynamic(tile, column, z, tile.dynamic[column], tile.static_bins[column]);
+  }
+  /// The same with other dynamic cells in the column, and groundBins() of them.
+  bool isDynamic(const Tile& tile, std::size_t column, float z, Bits dynamic,
+                 int ground_bins) const;
+  int groundBins(const Tile& tile, std::size_t column, Bits dynamic) const;
 
  private:
   bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }

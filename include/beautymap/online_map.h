@@ -64,6 +64,8 @@ class OnlineMap {
   void addHitEvidence();
   /// @param hit  whether the cells were hit; otherwise they were seen free
   void addEvidence(const BitGrid& cells, bool hit);
+  /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
+  BitGrid dynamicInScan() const;
   void classify(const Scan& scan);
   ColumnWindow window() const;
 
