@@ -79,10 +79,14 @@ BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int g
       const Bits leaning = window.leaning.at(x, y) & ~dynamic.at(x, y);
       const Bits unknown = window.unknown.at(x, y) & ~dynamic.at(x, y);
       if ((leaning | unknown) == 0) continue;
-      const Neighbourhood occupied = around(window.occupied, x, y);
       const Neighbourhood dynamic_around = around(dynamic, x, y);
+      Bits near = 0;
+      for (const Bits column : dynamic_around) near |= column & counted;
+      near |= near << 1 | near >> 1;
+      if (((leaning | unknown) & near) == 0) continue;
+      const Neighbourhood occupied = around(window.occupied, x, y);
       const Bits staying = window.occupied.at(x, y) & ~dynamic.at(x, y) & counted;
-      for (Bits rest = (leaning | unknown) & ~(staying << 1); rest != 0; rest &= rest - 1) {
+      for (Bits rest = (leaning | unknown) & near & ~(staying << 1); rest != 0; rest &= rest - 1) {
         const int bit = lowestBitIndex(rest);
         const int count = countAround(dynamic_around, bit, counted);
         const bool leans = (leaning >> bit & 1) != 0;

@@ -18,21 +18,12 @@ float medianOf(std::vector<float>& values) {
 
 void estimateTile(const HeightGrid& lowest, Tile& tile, const CoarseGroundConfig& config) {
   const int r = config.radius;
-  const int possible = (2 * r + 1) * (2 * r + 1) - 1;
   std::vector<float> neighbours;
   for (int x = 0; x < Tile::kSide; ++x) {
     for (int y = 0; y < Tile::kSide; ++y) {
       const std::size_t column = static_cast<std::size_t>(x << Tile::kShift | y);
       if (tile.lowest[column] == Tile::kNoHeight) continue;
-      neighbours.clear();
-      for (int dx = 0; dx <= 2 * r; ++dx) {
-        for (int dy = 0; dy <= 2 * r; ++dy) {
-          const float height = lowest.at(x + dx, y + dy);
-          if (height != Tile::kNoHeight && (dx != r || dy != r)) neighbours.push_back(height);
-        }
-      }
-      const GroundEstimate estimate =
-          coarseGroundOf(tile.lowest[column], neighbours, possible, config);
+      const GroundEstimate estimate = coarseGroundAt(lowest, x + r, y + r, neighbours, config);
       tile.ground[column] = estimate.height;
       tile.below_ground[column] = estimate.below_ground;
     }
@@ -61,6 +52,19 @@ GroundEstimate coarseGroundOf(float lowest, std::vector<float>& neighbours, int 
   for (float& height : neighbours) height = std::abs(height - median);
   const float margin = static_cast<float>(config.mad_factor) * medianOf(neighbours);
   return {std::clamp(lowest, median - margin, median + margin), lowest < median - margin};
+}
+
+GroundEstimate coarseGroundAt(const HeightGrid& lowest, int x, int y,
+                              std::vector<float>& neighbours, const CoarseGroundConfig& config) {
+  const int r = config.radius;
+  neighbours.clear();
+  for (int dx = -r; dx <= r; ++dx) {
+    for (int dy = -r; dy <= r; ++dy) {
+      const float height = lowest.at(x + dx, y + dy);
+      if (height != Tile::kNoHeight && (dx != 0 || dy != 0)) neighbours.push_back(height);
+    }
+  }
+  return coarseGroundOf(lowest.at(x, y), neighbours, (2 * r + 1) * (2 * r + 1) - 1, config);
 }
 
 void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config) {

@@ -168,17 +168,23 @@ void apply(Config& config, const YAML::Node& root) {
 
 }  // namespace
 
-Config loadConfig(const std::string& path) {
+Config parseConfig(const std::string& yaml) {
   Config config;
   try {
-    apply(config, YAML::Load(readFile(path)));
+    apply(config, YAML::Load(yaml));
   } catch (const YAML::Exception& e) {
-    throw ConfigError(path + ": cannot be read as YAML: " + e.what());
-  } catch (const ConfigError& e) {
-    throw ConfigError(path + ": " + e.what());
+    throw ConfigError(std::string("cannot be read as YAML: ") + e.what());
   }
   checkConfig(config);
   return config;
+}
+
+Config loadConfig(const std::string& path) {
+  try {
+    return parseConfig(readFile(path));
+  } catch (const ConfigError& e) {
+    throw ConfigError(path + ": " + e.what());
+  }
 }
 
 void setParameter(Config& config, const std::string& assignment) {

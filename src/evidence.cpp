@@ -34,6 +34,13 @@ void ColumnEvidence::append(const ColumnEvidence& later) {
   hits_.add(later.hits_, ~Bits{0});
 }
 
+void ColumnEvidence::shift(int bits, Bits mask) {
+  hits_.shift(bits, mask);
+  before_.shift(bits, mask);
+  between_.shift(bits, mask);
+  after_.shift(bits, mask);
+}
+
 bool ColumnEvidence::isStrong(int bit, const EvidenceConfig& config) const {
   return freeBefore(bit) + freeAfter(bit) > config.strong_ratio * hits(bit);
 }

@@ -52,16 +52,22 @@ bool GroundLayer::standsOut(const std::uint32_t* counts) const {
   return mean(cell_begin_, cell_end_) >= min_contrast_ * mean(cell_end_, above_end_);
 }
 
+int groundBinsOf(const Tile& tile, std::size_t column, Bits dynamic, const GroundLayer& layer,
+                 int ground_bit, const EvidenceConfig& evidence) {
+  const std::uint32_t* counts =
+      tile.fine_counts.data() + column * static_cast<std::size_t>(layer.bins());
+  const bool object_above = (dynamic >> (ground_bit + 1) & 1) != 0;
+  const bool is_ground = !object_above || !tile.evidence[column].isStrong(ground_bit, evidence) ||
+                         layer.standsOut(counts);
+  return is_ground ? layer.groundBins(counts, object_above) : 0;
+}
+
 void findGroundLayers(Tile& tile, const GroundLayer& layer, int ground_bit,
                       const EvidenceConfig& evidence) {
-  const auto bins = static_cast<std::size_t>(layer.bins());
   for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
-    const std::uint32_t* counts = tile.fine_counts.data() + i * bins;
-    const bool object_above = (tile.dynamic[i] >> (ground_bit + 1) & 1) != 0;
-    const bool is_ground = !object_above || !tile.evidence[i].isStrong(ground_bit, evidence) ||
-                           layer.standsOut(counts);
-    tile.static_bins[i] =
-        static_cast<std::uint16_t>(is_ground ? layer.groundBins(counts, object_above) : 0);
+    if (tile.dynamic[i] == 0) continue;
+    tile.static_bins[i] = static_cast<std::uint16_t>(
+        groundBinsOf(tile, i, tile.dynamic[i], layer, ground_bit, evidence));
   }
 }
 

@@ -25,26 +25,30 @@ void MapJudgement::judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& t
   for (const ColumnIndex index : tiles) {
     Tile& tile = *map.findTile(index);
     for (std::size_t column = 0; column < tile.evidence.size(); ++column) {
-      const ColumnEvidence& evidence = tile.evidence[column];
-      Bits suspected = 0, strong = 0, leaning = 0, unknown = 0;
-      const Bits ever_free = evidence.everFree();
-      for (Bits rest = tile.occupied[column]; rest != 0; rest &= rest - 1) {
-        const int bit = lowestBitIndex(rest);
-        if (bit == groundBit(tile, column)) continue;
-        if ((ever_free >> bit & 1) == 0) {
-          if (evidence.hits(bit) <= config_.evidence.unknown_hits) unknown |= lowestBit(rest);
-          continue;
-        }
-        if (evidence.isDynamic(bit, config_.evidence)) suspected |= lowestBit(rest);
-        if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);
-        if (evidence.isLeaning(bit, config_.evidence)) leaning |= lowestBit(rest);
-      }
-      tile.suspected[column] = suspected;
-      tile.strong[column] = strong;
-      tile.leaning[column] = leaning;
-      tile.unknown[column] = unknown;
+      judgeEvidence(tile, column, ~Bits{0});
     }
   }
+}
+
+void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) const {
+  const ColumnEvidence& evidence = tile.evidence[column];
+  const Bits ever_free = evidence.everFree();
+  const int ground_bit = groundBit(tile, column);
+  const Bits judged =
+      cells & tile.occupied[column] & ~(ground_bit < 0 ? Bits{0} : Bits{1} << ground_bit);
+  Bits suspected = 0, strong = 0, leaning = 0;
+  for (Bits rest = judged & ever_free; rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    if (evidence.isDynamic(bit, config_.evidence)) suspected |= lowestBit(rest);
+    if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);
+    if (evidence.isLeaning(bit, config_.evidence)) leaning |= lowestBit(rest);
+  }
+  const Bits unknown = judged & ~ever_free & ~evidence.hitMoreOften(config_.evidence.unknown_hits);
+  const auto set = [&](Bits& of_column, Bits found) { of_column = (of_column & ~cells) | found; };
+  set(tile.suspected[column], suspected);
+  set(tile.strong[column], strong);
+  set(tile.leaning[column], leaning);
+  set(tile.unknown[column], unknown);
 }
 
 void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
@@ -57,9 +61,13 @@ void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& 
     }
     const ColumnWindow window{{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin},
                               Tile::kSide + 2 * margin};
+    const BitGrid suspected = map.extract(window, &Tile::suspected, Bits{0});
+    if (suspected.isAll(0)) {
+      tile.dynamic.fill(0);
+      continue;
+    }
     const BitGrid dynamic = dynamicCells(
-        {map.extract(window, &Tile::occupied, Bits{0}),
-         map.extract(window, &Tile::suspected, Bits{0}),
+        {map.extract(window, &Tile::occupied, Bits{0}), suspected,
          map.extract(window, &Tile::strong, Bits{0}), map.extract(window, &Tile::leaning, Bits{0}),
          map.extract(window, &Tile::unknown, Bits{0})},
         config_.matrix.bits_below, config_.agreement);
@@ -109,12 +117,17 @@ void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const
   });
 }
 
-bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z) const {
-  const Bits dynamic = tile.dynamic[column];
+int MapJudgement::groundBins(const Tile& tile, std::size_t column, Bits dynamic) const {
+  if (!usesGroundLayer()) return tile.static_bins[column];
+  return groundBinsOf(tile, column, dynamic, ground_layer_, config_.matrix.bits_below,
+                      config_.evidence);
+}
+
+bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z, Bits dynamic,
+                             int ground_bins) const {
   const int bit = dynamic == 0 ? -1 : encoding_.bitIndex(z, tile.ground[column]);
   if (bit < 0) return false;
   const int bin = groundBin(tile, column, z);
-  const int ground_bins = tile.static_bins[column];
   if (usesGroundLayer()) {
     if (bin >= 0 && bin < ground_bins) return false;
     // What lies in the ground cell above the ground surface goes with the cell above.

@@ -24,6 +24,11 @@ struct GroundEstimate {
 GroundEstimate coarseGroundOf(float lowest, std::vector<float>& neighbours, int possible,
                               const CoarseGroundConfig& config);
 
+/// The same for a column of a window of lowest heights that holds its whole neighbourhood.
+/// @param neighbours  memory that is used again
+GroundEstimate coarseGroundAt(const HeightGrid& lowest, int x, int y,
+                              std::vector<float>& neighbours, const CoarseGroundConfig& config);
+
 /// Coarse ground of every column that has points; a symmetric neighbourhood, so the order is
 /// irrelevant.
 void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -49,6 +50,9 @@ class ColumnGrid {
   const T& at(int x, int y) const {
     return values_[static_cast<std::size_t>(x) * window_.size + y];
   }
+  bool isAll(const T& value) const {
+    return std::all_of(values_.begin(), values_.end(), [&](const T& v) { return v == value; });
+  }
   bool inside(int x, int y) const {
     return x >= 0 && x < window_.size && y >= 0 && y < window_.size;
   }
@@ -69,6 +73,12 @@ constexpr int kMaxBits = 64;
 /// Bits 0 to count - 1; all for count >= 64, none for count <= 0.
 constexpr Bits lowBits(int count) {
   return count <= 0 ? Bits{0} : count >= kMaxBits ? ~Bits{0} : (Bits{1} << count) - 1;
+}
+/// The column moved up by a number of bits, or down where it is negative.
+constexpr Bits shifted(Bits column, int bits) {
+  return bits >= kMaxBits || bits <= -kMaxBits ? Bits{0}
+         : bits >= 0                           ? column << bits
+                                               : column >> -bits;
 }
 /// The lowest set bit alone; 0 for an empty column.
 constexpr Bits lowestBit(Bits column) { return column & (~column + 1); }

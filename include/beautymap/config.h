@@ -204,6 +204,34 @@ struct AgreementConfig {
   }
 };
 
+/// Of a map that is cleaned while it grows (the node); a replay does not use it.
+struct OnlineConfig {
+  double map_voxel = 0.1;
+  double radius = 0.0;
+  double free_height = 4.0;
+  double ground_drift = 0.1;
+  double live_share = 0.2;
+  int live_rounds = 16;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("map_voxel", map_voxel, 0.0, 10.0, "m",
+      "the map keeps the first point in each cube of this side; 0: every point");
+    v("radius", radius, 0.0, 100000.0, "m",
+      "tiles farther from the sensor are written to disk until it comes back; 0: all stay in "
+      "memory");
+    v("free_height", free_height, 0.0, 100.0, "m",
+      "up to that height above ground it is remembered which empty cells were seen free");
+    v("ground_drift", ground_drift, 0.0, 1.0, "m",
+      "a column's cells move when its ground does by more than that");
+    v("live_share", live_share, 0.0, 1.0, "",
+      "in the split of a scan, share of the occupied cells around that must be dynamic for an "
+      "unknown cell to be, too; half of it where the cell leans to dynamic");
+    v("live_rounds", live_rounds, 0, 100, "columns",
+      "how far an object grows so in the split of a scan");
+  }
+};
+
 /// Everything that decides what is removed. Defaults here equal config/default.yaml.
 struct Config {
   ScanConfig scan;
@@ -215,6 +243,7 @@ struct Config {
   VisibilityConfig visibility;
   EvidenceConfig evidence;
   AgreementConfig agreement;
+  OnlineConfig online;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -227,6 +256,7 @@ struct Config {
     v.group("visibility", visibility);
     v.group("evidence", evidence);
     v.group("agreement", agreement);
+    v.group("online", online);
   }
 };
 
@@ -244,6 +274,9 @@ struct ParameterInfo {
 /// @throws ConfigError for a file that cannot be read, an unknown key, or a value outside its
 /// range.
 Config loadConfig(const std::string& path);
+
+/// The same from YAML text.
+Config parseConfig(const std::string& yaml);
 
 /// Sets one parameter from "group.name=value"; contradictions are left to checkConfig(). @throws
 /// ConfigError

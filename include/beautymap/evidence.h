@@ -53,6 +53,22 @@ class BitCounters {
     }
   }
 
+  /// The counters above a number.
+  Bits above(int number) const {
+    Bits greater = 0, equal = ~Bits{0};
+    for (int p = kPlanes - 1; p >= 0; --p) {
+      const Bits digit = (number >> p & 1) != 0 ? ~Bits{0} : Bits{0};
+      greater |= equal & planes_[p] & ~digit;
+      equal &= ~(planes_[p] ^ digit);
+    }
+    return number > kMax ? Bits{0} : greater;
+  }
+
+  /// Moves every counter to another bit, upwards for bits > 0; those that leave the mask are lost.
+  void shift(int bits, Bits mask) {
+    for (Bits& plane : planes_) plane = shifted(plane, bits) & mask;
+  }
+
   int count(int bit) const {
     int value = 0;
     for (int p = 0; p < kPlanes; ++p) value |= static_cast<int>(planes_[p] >> bit & 1) << p;
@@ -88,8 +104,14 @@ class ColumnEvidence {
   /// cut of the scans into stretches gives the same.
   void append(const ColumnEvidence& later);
 
+  /// Moves the evidence of every cell to another bit, upwards for bits > 0; what leaves the mask is
+  /// lost.
+  void shift(int bits, Bits mask);
+
   /// Cells that were seen free at least once.
   Bits everFree() const { return before_.any() | between_.any() | after_.any(); }
+  /// Cells that more scans hit than that.
+  Bits hitMoreOften(int scans) const { return hits_.above(scans); }
   int hits(int bit) const { return hits_.count(bit); }
   int freeBefore(int bit) const { return before_.count(bit); }
   int freeBetween(int bit) const { return between_.count(bit); }

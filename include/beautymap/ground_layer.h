@@ -51,8 +51,14 @@ class GroundLayer {
   int above_end_;
 };
 
-/// Sets how many bins of each column are ground. None where all speaks against ground: the cell
-/// above is dynamic, the ground cell itself has strong evidence, and no surface stands out in it.
+/// How many bins of a column with these dynamic cells are ground. None where all speaks against
+/// ground: the cell above is dynamic, the ground cell itself has strong evidence, and no surface
+/// stands out in it.
+int groundBinsOf(const Tile& tile, std::size_t column, Bits dynamic, const GroundLayer& layer,
+                 int ground_bit, const EvidenceConfig& evidence);
+
+/// Sets how many bins are ground in the columns of a tile that have dynamic cells; in the others
+/// nothing depends on it.
 void findGroundLayers(Tile& tile, const GroundLayer& layer, int ground_bit,
                       const EvidenceConfig& evidence);
 

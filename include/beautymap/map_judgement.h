@@ -27,15 +27,23 @@ class MapJudgement {
 
   /// Marks the cells that their own evidence holds for dynamic (Tile::suspected, Tile::strong).
   void judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// The same for some cells of one column, which has evidence.
+  void judgeEvidence(Tile& tile, std::size_t column, Bits cells) const;
   /// Tile::dynamic: the suspected cells that their neighbours support. The tiles beside those that
   /// judgeEvidence changed depend on them, too: see withNeighbours().
   void judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
-  /// Divides the columns' ground cells into ground and object points.
+  /// Divides the ground cells of columns with dynamic cells into ground and object points.
   void segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
 
   /// Whether a point of a column is removed.
   /// @param z  its height [m] above the map's z origin
-  bool isDynamic(const Tile& tile, std::size_t column, float z) const;
+  bool isDynamic(const Tile& tile, std::size_t column, float z) const {
+    return isDynamic(tile, column, z, tile.dynamic[column], tile.static_bins[column]);
+  }
+  /// The same with other dynamic cells in the column, and groundBins() of them.
+  bool isDynamic(const Tile& tile, std::size_t column, float z, Bits dynamic,
+                 int ground_bins) const;
+  int groundBins(const Tile& tile, std::size_t column, Bits dynamic) const;
 
  private:
   bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -47,6 +48,11 @@ struct Tile {
       static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
   std::vector<ColumnEvidence> evidence;    ///< empty until a scan is compared
   std::vector<std::uint32_t> fine_counts;  ///< points per fine bin of the ground cell
+
+  // Of maps that grow (OnlineMap).
+  std::bitset<kColumns> stale_ground;  ///< columns whose ground must be estimated again
+  bool unsettled = false;              ///< cells changed since their agreement was judged
+  std::uint64_t revision = 0;  ///< becomes another one when points may be judged differently
 };
 
 /// The map's matrix: unbounded, in tiles that exist where points are.
@@ -63,6 +69,7 @@ class TileMap {
   }
 
   Tile& tileAt(ColumnIndex tile);
+  void erase(ColumnIndex tile) { tiles_.erase(keyOf(tile)); }
   const Tile* findTile(ColumnIndex tile) const;
   Tile* findTile(ColumnIndex tile) {
     return const_cast<Tile*>(static_cast<const TileMap*>(this)->findTile(tile));

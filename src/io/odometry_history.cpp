@@ -43,6 +43,13 @@ void OdometryHistory::finish() {
   sorted_ = true;
 }
 
+void OdometryHistory::forgetBefore(std::uint64_t stamp_ns) {
+  finish();
+  const auto keep = std::find_if(samples_.begin(), samples_.end(),
+                                 [&](const Sample& sample) { return sample.stamp_ns >= stamp_ns; });
+  samples_.erase(samples_.begin(), keep);
+}
+
 std::optional<Eigen::Isometry3d> OdometryHistory::lookup(std::uint64_t stamp_ns,
                                                          std::string& why) const {
   if (samples_.empty()) {

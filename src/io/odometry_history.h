@@ -21,6 +21,9 @@ class OdometryHistory {
   /// To be called after the last insert().
   void finish();
 
+  /// For a history that goes on: poses older than that are not needed any more.
+  void forgetBefore(std::uint64_t stamp_ns);
+
   /// T_map_child at a time.
   /// @return nothing where it is not known; `why` then says why not
   std::optional<Eigen::Isometry3d> lookup(std::uint64_t stamp_ns, std::string& why) const;

@@ -70,7 +70,9 @@ void ScanSpool::append(const SourceScan& scan) {
   std::memcpy(record.T_map_cloud, scan.T_map_cloud.data(), sizeof(record.T_map_cloud));
   std::memcpy(record.T_map_sensor, scan.T_map_sensor.data(), sizeof(record.T_map_sensor));
   const std::vector<std::uint8_t>& data = scan.cloud.data;
-  if (std::fwrite(&record, sizeof(record), 1, file_.get()) != 1 ||
+  // Scans may be appended while others are read.
+  if (::fseeko(file_.get(), 0, SEEK_END) != 0 ||
+      std::fwrite(&record, sizeof(record), 1, file_.get()) != 1 ||
       std::fwrite(data.data(), 1, data.size(), file_.get()) != data.size()) {
     throw InputError("cannot keep the scans in a temporary file in '" + folder_ +
                      "': " + std::strerror(errno));
@@ -79,14 +81,15 @@ void ScanSpool::append(const SourceScan& scan) {
 }
 
 void ScanSpool::rewind() {
-  std::rewind(file_.get());
+  read_offset_ = 0;
   read_ = 0;
 }
 
 bool ScanSpool::next(SourceScan& scan) {
   if (read_ == size_) return false;
   Record record;
-  if (std::fread(&record, sizeof(record), 1, file_.get()) != 1) {
+  if (::fseeko(file_.get(), read_offset_, SEEK_SET) != 0 ||
+      std::fread(&record, sizeof(record), 1, file_.get()) != 1) {
     throw InputError("cannot read back the temporary file in '" + folder_ + "'");
   }
   std::vector<std::uint8_t> buffer = std::move(scan.cloud.data);
@@ -102,6 +105,7 @@ bool ScanSpool::next(SourceScan& scan) {
       scan.cloud.data.size()) {
     throw InputError("cannot read back the temporary file in '" + folder_ + "'");
   }
+  read_offset_ += static_cast<std::int64_t>(sizeof(record) + scan.cloud.data.size());
   ++read_;
   return true;
 }

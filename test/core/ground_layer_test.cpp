@@ -272,7 +272,7 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   map.forEachTile([&](ColumnIndex, Tile& tile) {
     tile.evidence.resize(Tile::kColumns);
     for (std::size_t i = 0; i < tile.dynamic.size(); ++i) {
-      tile.dynamic[i] = random.chance(0.5) ? Bits{1} << (kGroundBit + 1) : 0;
+      tile.dynamic[i] = Bits{1} << (kGroundBit + random.integer(1, 2));
       tile.evidence[i].observe(Bits{1} << kGroundBit, 0);
       for (int free = random.integer(0, 3); free > 0; --free) {
         tile.evidence[i].observe(0, Bits{1} << kGroundBit);
@@ -286,7 +286,7 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
     for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
       const std::size_t first = i * static_cast<std::size_t>(layer.bins());
       const std::uint32_t* counts = tile.fine_counts.data() + first;
-      const bool object_above = tile.dynamic[i] != 0;
+      const bool object_above = tile.dynamic[i] == Bits{1} << (kGroundBit + 1);
       const bool object =
           object_above && tile.evidence[i].freeAfter(kGroundBit) > 1 && !layer.standsOut(counts);
       ASSERT_EQ(tile.static_bins[i], object ? 0 : whole.groundBins(counts, object_above));

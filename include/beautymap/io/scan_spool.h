@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,7 +13,8 @@
 namespace beautymap {
 
 /// A temporary file of scans, for a source that is slow to read (compressed bags, text files) and
-/// wanted several times. All scans have the fields of the first one. The file has no name: it is
+/// wanted several times; more may be appended while it is read. All scans have the fields of the
+/// first one. The file has no name: it is
 /// gone with the process, however that ends.
 class ScanSpool {
  public:
@@ -39,6 +41,7 @@ class ScanSpool {
   pcl::PCLPointCloud2 layout_;  ///< fields of the first scan, no points
   std::size_t size_ = 0;
   std::size_t read_ = 0;
+  std::int64_t read_offset_ = 0;  ///< [byte]
 };
 
 }  // namespace beautymap

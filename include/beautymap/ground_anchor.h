@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "beautymap/config.h"
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+/// Moves the bottom of a column to another height [m]: its cells, their evidence and the counts of
+/// heights near the ground follow by the nearest whole number of bits and bins. What comes to lie
+/// above the highest bit counts as that bit, what comes to lie below the lowest is lost.
+void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& config);
+
+/// Sets the bottom of a column to an estimate [m]: at once where the column holds nothing,
+/// otherwise with moveBottom(), and only if it is farther than max_drift from where the cells are
+/// anchored.
+/// @return whether cells moved
+bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift,
+                  const Config& config);
+
+/// A provisional ground for the columns of a tile without points, so that they can be seen free
+/// before something enters them: that of the nearest column with points.
+/// @return  Tile::kNoHeight for columns with points, and in a tile without any
+std::array<float, Tile::kColumns> groundOfEmptyColumns(const Tile& tile);
+
+}  // namespace beautymap

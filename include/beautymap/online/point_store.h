@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "beautymap/io/copy_runs.h"
+#include "beautymap/scan.h"
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+/// Keys of voxels: open addressing, because millions of them are looked up per second.
+class VoxelSet {
+ public:
+  /// @return false when it was there already
+  bool insert(std::uint64_t key);
+  std::size_t size() const { return size_; }
+  std::size_t memoryBytes() const { return slots_.size() * sizeof(std::uint64_t); }
+  /// All keys, in no particular order.
+  std::vector<std::uint64_t> keys() const;
+
+ private:
+  bool place(std::uint64_t slot);
+
+  std::vector<std::uint64_t> slots_;  ///< key + 1; 0: empty
+  std::size_t size_ = 0;
+};
+
+/// The points of one tile: their records in the map frame, and what a judgement needs.
+struct TilePoints {
+  std::vector<std::uint8_t> records;
+  std::vector<std::uint16_t> column;  ///< in the tile
+  std::vector<float> z;               ///< [m] above the map's z origin
+  VoxelSet voxels;
+
+  std::size_t size() const { return column.size(); }
+  std::size_t memoryBytes() const;
+};
+
+/// The points of a map, by tile: every point, or the first in each voxel, in the order in which
+/// they came. All records have the layout of the first cloud.
+class PointStore {
+ public:
+  /// @param voxel_m  side of the voxels [m]; 0: every point is kept
+  PointStore(double res_g, double voxel_m) : res_g_(res_g), voxel_m_(voxel_m) {}
+
+  /// Adds the points of a scan, whose cloud is given in the map frame with all its fields. Fields
+  /// that the first cloud did not have are left out, those that this one lacks are 0.
+  /// @return how many were kept
+  std::size_t add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud_in_map);
+
+  /// Fields and point_step of the records, no points; without fields before the first scan.
+  const pcl::PCLPointCloud2& layout() const { return layout_; }
+  void setLayout(const pcl::PCLPointCloud2& layout) { layout_ = layout; }
+
+  TilePoints& tileAt(ColumnIndex tile) { return tiles_[{tile.x, tile.y}]; }
+  const TilePoints* findTile(ColumnIndex tile) const;
+  void erase(ColumnIndex tile);
+  std::size_t size() const { return size_; }
+  /// A tile was filled from outside.
+  void countAdded(std::size_t points) { size_ += points; }
+  std::size_t memoryBytes() const;
+
+ private:
+  std::uint64_t voxelKey(const PlacedScan& placed, const Eigen::Vector3f& point) const;
+
+  double res_g_;
+  double voxel_m_;
+  pcl::PCLPointCloud2 layout_;
+  std::map<std::pair<std::int32_t, std::int32_t>, TilePoints> tiles_;
+  std::size_t size_ = 0;
+};
+
+/// How records of a cloud's layout become records of another one: fields of the same name and type.
+std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLPointCloud2& to);
+
+/// Fields and point_step of a cloud.
+pcl::PCLPointCloud2 layoutOf(const pcl::PCLPointCloud2& cloud);
+
+}  // namespace beautymap

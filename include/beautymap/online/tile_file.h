@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "beautymap/config.h"
+#include "beautymap/online/point_store.h"
+#include "beautymap/tile_map.h"
+
+namespace beautymap {
+
+/// A file of tiles with all their state, from which a map can go on. For the machine and the
+/// version that wrote it, not for exchange. Beside its target until close().
+class TileFileWriter {
+ public:
+  /// What all tiles of a file share.
+  struct Header {
+    std::string map_frame;
+    double z_origin = 0.0;
+    pcl::PCLPointCloud2 layout;  ///< of the points' records
+  };
+
+  /// @throws InputError when the file cannot be made, or (append, close) the disk is full.
+  TileFileWriter(std::string path, const Header& header, const Config& config);
+  ~TileFileWriter();
+  TileFileWriter(const TileFileWriter&) = delete;
+  TileFileWriter& operator=(const TileFileWriter&) = delete;
+  void append(ColumnIndex index, const Tile& tile, const TilePoints& points);
+  void close();
+
+ private:
+  void write(const void* data, std::size_t size);
+
+  std::string path_;
+  std::string temporary_path_;
+  std::FILE* file_ = nullptr;
+};
+
+class TileFileReader {
+ public:
+  /// @throws InputError when it is no such file, or was written with another matrix than the
+  /// configuration's, whose bits and bins would mean something else.
+  TileFileReader(const std::string& path, const Config& config);
+
+  const TileFileWriter::Header& header() const { return header_; }
+  /// The next tile; false at the end.
+  /// @throws InputError when the file is damaged.
+  bool next(ColumnIndex& index, Tile& tile, TilePoints& points);
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void read(void* data, std::size_t size);
+  template <typename T>
+  void readVector(std::vector<T>& values);
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::uint64_t size_ = 0;  ///< of the file [byte]: no damaged count allocates more
+  TileFileWriter::Header header_;
+};
+
+}  // namespace beautymap

@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/online/online_cleaner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/pcd_stream.h"
+#include "beautymap/io/scan_conversion.h"
+
+namespace beautymap {
+namespace {
+
+// float32 rounds to less than half a millimetre up to here.
+constexpr double kMaxFloat32Coordinate = 8192.0;
+
+/// Points beyond the radius would bring back the tiles that were put on disk.
+Config withinRadius(Config config) {
+  if (config.online.radius > 0.0) {
+    config.scan.max_range = std::min(config.scan.max_range, config.online.radius);
+  }
+  return config;
+}
+
+}  // namespace
+
+/// Lets scans that wait go first: a mutex alone would give a reader of many tiles the lock again
+/// and again.
+class OnlineCleaner::ReaderLock {
+ public:
+  explicit ReaderLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
+    while (cleaner.scans_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+OnlineCleaner::OnlineCleaner(const Config& config, std::string folder)
+    : folder_(std::move(folder)),
+      map_(withinRadius(config)),
+      points_(config.matrix.res_g, config.online.map_voxel) {
+  if (config.online.radius <= 0.0) return;
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (folder_.empty() || error) {
+    throw InputError("cannot make the folder '" + folder_ + "' for tiles outside of online.radius" +
+                     (error ? ": " + error.message() : ""));
+  }
+}
+
+OnlineCleaner::~OnlineCleaner() {
+  std::error_code ignored;
+  for (const auto& tile : on_disk_) {
+    std::filesystem::remove(fileOf({tile.first.first, tile.first.second}), ignored);
+  }
+  if (!folder_.empty()) std::filesystem::remove(folder_, ignored);  // only if it is empty
+}
+
+const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
+  Scan scan;
+  convertScan(source, scan);
+  ++scans_waiting_;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  --scans_waiting_;
+  if (!started_) {
+    float64_ =
+        scan.sensor_in_map.cwiseAbs().maxCoeff() + config().scan.max_range > kMaxFloat32Coordinate;
+  }
+  if (scan.sensor_in_map.allFinite()) fetchNear(scan.sensor_in_map);
+  const auto& classes = map_.addHits(scan);
+  started_ = true;
+  return classes;
+}
+
+void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
+  const pcl::PCLPointCloud2 in_map = moveCloud(scan.cloud, scan.T_map_cloud, float64_);
+  ++scans_waiting_;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  --scans_waiting_;
+  points_.add(map_.placed(), in_map);
+  if (see_free) map_.addSeenFree();
+  map_.settle();
+  storeFar(scan.T_map_sensor.translation());
+}
+
+double OnlineCleaner::distance(ColumnIndex tile, const Eigen::Vector3d& sensor) const {
+  const double side = config().matrix.res_g * Tile::kSide;
+  return std::hypot((tile.x + 0.5) * side - sensor.x(), (tile.y + 0.5) * side - sensor.y());
+}
+
+std::string OnlineCleaner::fileOf(ColumnIndex tile) const {
+  return folder_ + "/tile_" + std::to_string(tile.x) + "_" + std::to_string(tile.y);
+}
+
+void OnlineCleaner::fetch(ColumnIndex index, Tile& tile, TilePoints& points) const {
+  TileFileReader reader(fileOf(index), config());
+  ColumnIndex read;
+  if (!reader.next(read, tile, points) || read != index) {
+    throw InputError("'" + fileOf(index) + "' holds another tile");
+  }
+}
+
+void OnlineCleaner::fetchNear(const Eigen::Vector3d& sensor) {
+  const double side = config().matrix.res_g * Tile::kSide;
+  for (auto it = on_disk_.begin(); it != on_disk_.end();) {
+    const ColumnIndex index{it->first.first, it->first.second};
+    if (distance(index, sensor) > config().online.radius + side) {
+      ++it;
+      continue;
+    }
+    TilePoints points;
+    Tile tile(map_.map().fineBins());
+    fetch(index, tile, points);
+    map_.map().tileAt(index) = std::move(tile);
+    points_.countAdded(points.size());
+    points_.tileAt(index) = std::move(points);
+    std::error_code ignored;
+    std::filesystem::remove(fileOf(index), ignored);
+    it = on_disk_.erase(it);
+  }
+}
+
+void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
+  const double radius = config().online.radius;
+  if (radius <= 0.0) return;
+  const double side = config().matrix.res_g * Tile::kSide;
+  std::vector<ColumnIndex> far;
+  map_.map().forEachTile([&](ColumnIndex index, const Tile&) {
+    // Farther than what fetchNear() brings back, so that a standing sensor moves no tile.
+    if (distance(index, sensor) > radius + 2.0 * side) far.push_back(index);
+  });
+  for (const ColumnIndex index : far) {
+    const TilePoints& points = points_.tileAt(index);
+    TileFileWriter writer(fileOf(index), header(""), config());
+    writer.append(index, *map_.map().findTile(index), points);
+    writer.close();
+    on_disk_[{index.x, index.y}] = points.size();
+    points_.erase(index);
+    map_.map().erase(index);
+  }
+}
+
+TileFileWriter::Header OnlineCleaner::header(const std::string& map_frame) const {
+  return {map_frame, map_.zOrigin(), points_.layout()};
+}
+
+std::vector<ColumnIndex> OnlineCleaner::tiles() const {
+  const ReaderLock lock(*this);
+  std::vector<ColumnIndex> tiles = tilesOf(map_.map());
+  for (const auto& tile : on_disk_) tiles.push_back({tile.first.first, tile.first.second});
+  std::sort(tiles.begin(), tiles.end(),
+            [](ColumnIndex a, ColumnIndex b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  return tiles;
+}
+
+bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
+  const ReaderLock lock(*this);
+  const Tile* tile = map_.map().findTile(index);
+  const TilePoints* points = points_.findTile(index);
+  Tile stored(0);
+  TilePoints stored_points;
+  if (on_disk_.count({index.x, index.y}) != 0) {
+    stored = Tile(map_.map().fineBins());
+    fetch(index, stored, stored_points);
+    tile = &stored;
+    points = &stored_points;
+  }
+  if (tile == nullptr || points == nullptr) return false;
+  // Both only grow.
+  const std::uint64_t version = 1 + tile->revision + points->size();
+  if (version == view.version) return false;
+  view.version = version;
+  view.cleaned.clear();
+  view.removed.clear();
+  const std::size_t step = points_.layout().point_step;
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    auto& records =
+        map_.isDynamic(*tile, points->column[i], points->z[i]) ? view.removed : view.cleaned;
+    const std::uint8_t* record = points->records.data() + i * step;
+    records.insert(records.end(), record, record + step);
+  }
+  return true;
+}
+
+pcl::PCLPointCloud2 OnlineCleaner::layout() const {
+  const ReaderLock lock(*this);
+  return points_.layout();
+}
+
+std::pair<BitGrid, BitGrid> OnlineCleaner::bitsAround(double half_side_m) const {
+  const ReaderLock lock(*this);
+  const int half = std::max(1, static_cast<int>(half_side_m / config().matrix.res_g));
+  const ColumnIndex centre = map_.placed().anchor;
+  const ColumnWindow window{{centre.x - half, centre.y - half}, 2 * half + 1};
+  return {map_.map().extract(window, &Tile::occupied, Bits{0}),
+          map_.map().extract(window, &Tile::dynamic, Bits{0})};
+}
+
+void OnlineCleaner::saveSession(const std::string& path, const std::string& map_frame) const {
+  const std::vector<ColumnIndex> all = tiles();
+  const TileFileWriter::Header head = [&] {
+    const ReaderLock lock(*this);
+    return header(map_frame);
+  }();
+  TileFileWriter writer(path, head, config());
+  for (const ColumnIndex index : all) {
+    const ReaderLock lock(*this);
+    if (on_disk_.count({index.x, index.y}) != 0) {
+      Tile tile(map_.map().fineBins());
+      TilePoints points;
+      fetch(index, tile, points);
+      writer.append(index, tile, points);
+      continue;
+    }
+    const Tile* tile = map_.map().findTile(index);
+    const TilePoints* points = points_.findTile(index);
+    if (tile != nullptr) writer.append(index, *tile, points != nullptr ? *points : TilePoints());
+  }
+  writer.close();
+}
+
+std::string OnlineCleaner::loadSession(const std::string& path) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  TileFileReader reader(path, config());
+  map_.setZOrigin(reader.header().z_origin);
+  points_.setLayout(reader.header().layout);
+  for (const pcl::PCLPointField& field : reader.header().layout.fields) {
+    if (field.name == "x") float64_ = field.datatype == pcl::PCLPointField::FLOAT64;
+  }
+  started_ = true;
+  while (true) {
+    Tile tile(map_.map().fineBins());
+    TilePoints points;
+    ColumnIndex index;
+    if (!reader.next(index, tile, points)) break;
+    tile.unsettled = true;
+    map_.map().tileAt(index) = std::move(tile);
+    points_.countAdded(points.size());
+    points_.tileAt(index) = std::move(points);
+  }
+  map_.settle();
+  return reader.header().map_frame;
+}
+
+OnlineCleaner::Size OnlineCleaner::size() const {
+  const ReaderLock lock(*this);
+  Size size;
+  size.points = points_.size();
+  for (const auto& tile : on_disk_) size.points += tile.second;
+  size.tiles = map_.map().tileCount() + on_disk_.size();
+  size.tiles_on_disk = on_disk_.size();
+  size.memory_mb =
+      static_cast<double>(map_.map().memoryBytes() + points_.memoryBytes()) / 1048576.0;
+  return size;
+}
+
+DroppedPoints OnlineCleaner::dropped() const {
+  const ReaderLock lock(*this);
+  return map_.dropped();
+}
+
+StageTimes OnlineCleaner::times() const {
+  const ReaderLock lock(*this);
+  return map_.times();
+}
+
+void thinRecords(std::vector<std::uint8_t>& records, const pcl::PCLPointCloud2& layout,
+                 double voxel_m) {
+  if (voxel_m <= 0.0 || records.empty()) return;
+  pcl::PCLPointCloud2 cloud = layout;
+  cloud.data = std::move(records);
+  cloud.width = static_cast<std::uint32_t>(cloud.data.size() / layout.point_step);
+  const PositionReader position(cloud);
+  VoxelSet voxels;
+  records.clear();
+  for (std::size_t i = 0; i < cloud.width; ++i) {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
+    const Eigen::Array3d cell = (position(i).array() / voxel_m).floor();
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      key = key << 21 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis])) & kMask);
+    }
+    if (!voxels.insert(key)) continue;
+    const std::uint8_t* record = cloud.data.data() + i * layout.point_step;
+    records.insert(records.end(), record, record + layout.point_step);
+  }
+}
+
+std::pair<std::uint64_t, std::uint64_t> savePoints(const OnlineCleaner& cleaner,
+                                                   const std::string& cleaned_path,
+                                                   const std::string& removed_path,
+                                                   double voxel_m) {
+  const pcl::PCLPointCloud2 layout = cleaner.layout();
+  if (layout.fields.empty()) throw InputError("the map is empty: no scan has been added yet");
+  PcdStreamWriter cleaned(cleaned_path, layout), removed(removed_path, layout);
+  const auto write = [&](std::vector<std::uint8_t>& records, PcdStreamWriter& writer) {
+    thinRecords(records, layout, voxel_m);
+    for (std::size_t at = 0; at < records.size(); at += layout.point_step) {
+      writer.append(records.data() + at);
+    }
+  };
+  for (const ColumnIndex tile : cleaner.tiles()) {
+    OnlineCleaner::TileView view;
+    if (!cleaner.look(tile, view)) continue;
+    write(view.cleaned, cleaned);
+    write(view.removed, removed);
+  }
+  cleaned.close();
+  removed.close();
+  return {cleaned.size(), removed.size()};
+}
+
+}  // namespace beautymap

@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/online_map.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "beautymap/agreement.h"
+#include "beautymap/binary_encoding.h"
+#include "beautymap/coarse_ground.h"
+#include "beautymap/ground_anchor.h"
+
+namespace beautymap {
+namespace {
+
+// Lowest heights fall by millimetres in every scan: not a reason to estimate the ground again.
+constexpr float kNoticeable = 0.02F;  // [m]
+
+const Config& checked(const Config& config) {
+  checkConfig(config);
+  if (!config.evidence.enabled) {
+    throw ConfigError("evidence.enabled = false: a map that grows is judged by evidence only");
+  }
+  if (!config.coarse_ground.enabled) {
+    throw ConfigError(
+        "coarse_ground.enabled = false: the lowest point of a map that grows is "
+        "not known");
+  }
+  return config;
+}
+
+}  // namespace
+
+OnlineMap::OnlineMap(const Config& config)
+    : config_(checked(config)),
+      judgement_(config),
+      map_(judgement_.fineBins()),
+      beams_(config.visibility) {}
+
+const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
+  StageClock clock(times_);
+  const double z_origin = z_origin_.value_or(scan.sensor_in_map.z());
+  placed_ =
+      placeScan(scan, z_origin, config_.matrix.res_g, config_.scan, dropped_, std::move(placed_));
+  z_origin_ = z_origin;
+  clock.lap("placing");
+  addLowest();
+  updateGround();
+  clock.lap("coarse_ground");
+  addOccupied();
+  clock.lap("binary_encoding");
+  judgement_.countGroundPoints(map_, placed_);
+  clock.lap("fine_ground");
+  addHitEvidence();
+  clock.lap("evidence");
+  settle();
+  clock.lap("agreement");
+  classify(scan);
+  clock.lap("classifying");
+  return classes_;
+}
+
+void OnlineMap::addLowest() {
+  lowered_.clear();
+  TileCursor<TileMap> tile_of(map_);
+  forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
+    const ColumnIndex column{placed_.anchor.x + x, placed_.anchor.y + y};
+    float& lowest = tile_of(column)->lowest[static_cast<std::size_t>(TileMap::indexInTile(column))];
+    if (z >= lowest) return;
+    if (lowest - z > kNoticeable) lowered_.push_back(column);
+    lowest = z;
+  });
+}
+
+void OnlineMap::updateGround() {
+  const int r = config_.coarse_ground.radius;
+  std::vector<ColumnIndex> stale;
+  for (const ColumnIndex column : lowered_) {
+    for (int dx = -r; dx <= r; ++dx) {
+      for (int dy = -r; dy <= r; ++dy) {
+        const ColumnIndex near{column.x + dx, column.y + dy};
+        const ColumnIndex index = TileMap::tileOf(near);
+        Tile* tile = map_.findTile(index);
+        if (tile == nullptr) continue;
+        if (tile->stale_ground.none()) stale.push_back(index);
+        tile->stale_ground.set(static_cast<std::size_t>(TileMap::indexInTile(near)));
+      }
+    }
+  }
+  for (const ColumnIndex index : stale) estimateStaleGround(index, *map_.findTile(index));
+}
+
+void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
+  const CoarseGroundConfig& config = config_.coarse_ground;
+  const int r = config.radius;
+  const HeightGrid lowest =
+      map_.extract({{index.x * Tile::kSide - r, index.y * Tile::kSide - r}, Tile::kSide + 2 * r},
+                   &Tile::lowest, Tile::kNoHeight);
+  const float below = static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
+  const auto anchor = [&](std::size_t column, float ground) {
+    if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {
+      tile.unsettled = true;
+      ++tile.revision;
+    }
+  };
+  for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    if (!tile.stale_ground[column] || tile.lowest[column] == Tile::kNoHeight) continue;
+    const int x = static_cast<int>(column) >> Tile::kShift;
+    const int y = static_cast<int>(column) & (Tile::kSide - 1);
+    anchor(column, coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height);
+  }
+  tile.stale_ground.reset();
+  const auto empty = groundOfEmptyColumns(tile);
+  for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    // The nearest column's bottom, which lies below its ground already.
+    if (empty[column] != Tile::kNoHeight) anchor(column, empty[column] + below);
+  }
+}
+
+void OnlineMap::addOccupied() {
+  const BinaryEncoding encoding(config_.matrix);
+  forEachTilePoint(map_, placed_, config_.matrix.res_g,
+                   [&](Tile* tile, std::size_t column, float z) {
+                     const Bits bit = encoding.bit(z, tile->ground[column]);
+                     if ((bit & ~tile->occupied[column]) == 0) return;
+                     tile->occupied[column] |= bit;
+                     tile->unsettled = true;
+                   });
+}
+
+ColumnWindow OnlineMap::window() const {
+  const int half =
+      std::max(1, static_cast<int>(0.5 * config_.matrix.roi_size / config_.matrix.res_g));
+  return {{placed_.anchor.x - half, placed_.anchor.y - half}, 2 * half + 1};
+}
+
+void OnlineMap::addHitEvidence() {
+  hits_ =
+      encodeScan(placed_, map_.extract(window(), &Tile::ground, Tile::kNoHeight), config_.matrix);
+  addEvidence(hits_, true);
+}
+
+void OnlineMap::addSeenFree() {
+  StageClock clock(times_);
+  beams_.fill(placed_);
+  clock.lap("beam_image");
+  const int height = static_cast<int>(config_.online.free_height / config_.matrix.res_h);
+  const Bits remembered =
+      lowBits(std::min(config_.matrix.bits_below + height, config_.matrix.n_bit)) &
+      ~lowBits(config_.matrix.bits_below);
+  BitGrid candidates(hits_.window(), 0);
+  HeightGrid ground(hits_.window(), Tile::kNoHeight);
+  forEachColumn(std::as_const(map_), candidates.window(),
+                [&](int x, int y, const Tile& tile, std::size_t column) {
+                  ground.at(x, y) = tile.ground[column];
+                  if (tile.ground[column] == Tile::kNoHeight) return;
+                  candidates.at(x, y) = (tile.occupied[column] | remembered) & ~hits_.at(x, y);
+                });
+  clock.lap("matrix_comparison");
+  const BitGrid seen_free =
+      cellsSeenFree(beams_, candidates, ground, placed_, config_.matrix, config_.visibility);
+  clock.lap("beam_visibility");
+  addEvidence(seen_free, false);
+  clock.lap("evidence");
+}
+
+void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
+  forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
+    const Bits observed = cells.at(x, y);
+    if (observed == 0) return;
+    if (tile.evidence.empty()) tile.evidence.resize(Tile::kColumns);
+    tile.evidence[column].observe(hit ? observed : 0, hit ? 0 : observed);
+    if ((observed & tile.occupied[column]) == 0) return;
+    const auto judged = [&] {
+      return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],
+                             tile.unknown[column]);
+    };
+    const auto before = judged();
+    judgement_.judgeEvidence(tile, column, observed);
+    if (judged() != before) tile.unsettled = true;
+  });
+}
+
+void OnlineMap::settle() {
+  std::vector<ColumnIndex> changed;
+  map_.forEachTile([&](ColumnIndex index, Tile& tile) {
+    if (tile.unsettled) changed.push_back(index);
+    tile.unsettled = false;
+  });
+  for (const ColumnIndex index : withNeighbours(map_, changed)) {
+    Tile& tile = *map_.findTile(index);
+    const auto dynamic = tile.dynamic;
+    const auto static_bins = tile.static_bins;
+    judgement_.judgeAgreement(map_, {index});
+    judgement_.segmentGround(map_, {index});
+    if (dynamic != tile.dynamic || static_bins != tile.static_bins) ++tile.revision;
+  }
+}
+
+BitGrid OnlineMap::dynamicInScan() const {
+  const ColumnWindow& window = hits_.window();
+  const Bits above_ground = ~lowBits(config_.matrix.bits_below + 1);
+  EvidenceWindow cells{BitGrid(window, 0), BitGrid(window, 0), BitGrid(window, 0),
+                       BitGrid(window, 0), BitGrid(window, 0)};
+  forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
+    const Bits hit = hits_.at(x, y) & above_ground;
+    if (hit == 0) return;
+    const Bits dynamic = hit & tile.dynamic[column];
+    cells.occupied.at(x, y) = hit;
+    cells.suspected.at(x, y) = dynamic;
+    cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
+    cells.unknown.at(x, y) = hit & tile.unknown[column] & ~dynamic;
+  });
+  // The finished map waits for more evidence; of an object that has just entered, the cells that
+  // were never seen before are all that is known.
+  AgreementConfig agreement = config_.agreement;
+  agreement.min_share = config_.online.live_share;
+  agreement.join_share = 0.5 * config_.online.live_share;
+  BitGrid dynamic = std::move(cells.suspected);
+  for (int round = 0; round < config_.online.live_rounds; ++round) {
+    const BitGrid joining = joiningCells(cells, dynamic, config_.matrix.bits_below, agreement);
+    if (joining.isAll(0)) break;
+    for (int x = 0; x < window.size; ++x) {
+      for (int y = 0; y < window.size; ++y) dynamic.at(x, y) |= joining.at(x, y);
+    }
+  }
+  return dynamic;
+}
+
+void OnlineMap::classify(const Scan& scan) {
+  const BitGrid grown = dynamicInScan();
+  const ColumnIndex corner = grown.window().corner;
+  classes_.assign(scan.cloud.size(), PointClass::kDropped);
+  auto source = placed_.source_index.begin();
+  TileCursor<const TileMap> tile_of(map_);
+  forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
+    const ColumnIndex index{placed_.anchor.x + x, placed_.anchor.y + y};
+    const Tile& tile = *tile_of(index);
+    const auto column = static_cast<std::size_t>(TileMap::indexInTile(index));
+    const int wx = index.x - corner.x, wy = index.y - corner.y;
+    const Bits more = grown.inside(wx, wy) ? grown.at(wx, wy) & ~tile.dynamic[column] : Bits{0};
+    const Bits dynamic = tile.dynamic[column] | more;
+    const bool is_dynamic =
+        dynamic != 0 &&
+        judgement_.isDynamic(
+            tile, column, z, dynamic,
+            more == 0 ? tile.static_bins[column] : judgement_.groundBins(tile, column, dynamic));
+    classes_[*source++] = is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
+  });
+}
+
+}  // namespace beautymap

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/ros/map_publisher.h"
+
+#include <nav_msgs/OccupancyGrid.h>
+#include <pcl_conversions/pcl_conversions.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace beautymap {
+namespace {
+
+// Values of ~matrix, as rviz colours them.
+constexpr std::int8_t kUnknown = -1;
+constexpr std::int8_t kGround = 0;
+constexpr std::int8_t kDynamic = 50;
+constexpr std::int8_t kStatic = 100;
+
+}  // namespace
+
+MapPublisher::MapPublisher(ros::NodeHandle& private_nh, Source source, double matrix_size_m)
+    : source_(std::move(source)),
+      matrix_size_m_(matrix_size_m),
+      cleaned_(private_nh.advertise<sensor_msgs::PointCloud2>("cleaned_map", 1, true)),
+      removed_(private_nh.advertise<sensor_msgs::PointCloud2>("removed_points", 1, true)),
+      matrix_(private_nh.advertise<nav_msgs::OccupancyGrid>("matrix", 1, true)),
+      thread_([this] { run(); }) {}
+
+MapPublisher::~MapPublisher() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopped_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void MapPublisher::configure(double period_s, double voxel_m) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    period_s_ = period_s;
+    voxel_m_ = voxel_m;
+  }
+  changed_.notify_all();
+}
+
+void MapPublisher::run() {
+  auto last = std::chrono::steady_clock::now();
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopped_) {
+    // Wall time: with /use_sim_time a clock that stands still must not keep the map back.
+    const auto next = last + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                 std::chrono::duration<double>(period_s_));
+    if (std::chrono::steady_clock::now() < next) {
+      changed_.wait_until(lock, next);
+      continue;
+    }
+    lock.unlock();
+    try {
+      publish();
+    } catch (const std::exception& error) {
+      ROS_WARN_THROTTLE(5.0, "the map cannot be published: %s", error.what());
+    }
+    last = std::chrono::steady_clock::now();
+    lock.lock();
+  }
+}
+
+void MapPublisher::publish() {
+  const bool wants_cleaned = cleaned_.getNumSubscribers() > 0;
+  const bool wants_removed = removed_.getNumSubscribers() > 0;
+  const auto [cleaner, frame] = source_();
+  if (!cleaner) return;
+  if (wants_cleaned || wants_removed) {
+    double voxel_m = 0.0;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      voxel_m = voxel_m_;
+    }
+    if (shown_.lock() != cleaner || shown_voxel_m_ != voxel_m) views_.clear();
+    shown_ = cleaner;
+    shown_voxel_m_ = voxel_m;
+    update(*cleaner, voxel_m);
+  } else {
+    views_.clear();
+  }
+  if (wants_cleaned) {
+    cleaned_.publish(assemble(*cleaner, frame, &OnlineCleaner::TileView::cleaned));
+  }
+  if (wants_removed) {
+    removed_.publish(assemble(*cleaner, frame, &OnlineCleaner::TileView::removed));
+  }
+  if (matrix_.getNumSubscribers() > 0) publishMatrix(*cleaner, frame);
+}
+
+void MapPublisher::update(const OnlineCleaner& cleaner, double voxel_m) {
+  const pcl::PCLPointCloud2 layout = cleaner.layout();
+  for (const ColumnIndex index : cleaner.tiles()) {
+    OnlineCleaner::TileView& view = views_[{index.x, index.y}];
+    if (!cleaner.look(index, view)) continue;
+    thinRecords(view.cleaned, layout, voxel_m);
+    thinRecords(view.removed, layout, voxel_m);
+  }
+}
+
+sensor_msgs::PointCloud2Ptr MapPublisher::assemble(
+    const OnlineCleaner& cleaner, const std::string& frame,
+    std::vector<std::uint8_t> OnlineCleaner::TileView::*records) {
+  const pcl::PCLPointCloud2 layout = cleaner.layout();
+  auto message = boost::make_shared<sensor_msgs::PointCloud2>();
+  message->header.frame_id = frame;
+  message->header.stamp = ros::Time::now();
+  pcl_conversions::fromPCL(layout.fields, message->fields);
+  message->point_step = layout.point_step;
+  message->height = 1;
+  message->is_dense = true;
+  std::size_t bytes = 0;
+  for (const auto& view : views_) bytes += (view.second.*records).size();
+  message->data.reserve(bytes);
+  for (const auto& view : views_) {
+    const auto& of_tile = view.second.*records;
+    message->data.insert(message->data.end(), of_tile.begin(), of_tile.end());
+  }
+  message->row_step = static_cast<std::uint32_t>(bytes);
+  message->width =
+      layout.point_step == 0 ? 0 : static_cast<std::uint32_t>(bytes / layout.point_step);
+  return message;
+}
+
+void MapPublisher::publishMatrix(const OnlineCleaner& cleaner, const std::string& frame) {
+  const auto [occupied, dynamic] = cleaner.bitsAround(0.5 * matrix_size_m_);
+  const MatrixConfig& matrix = cleaner.config().matrix;
+  const ColumnWindow& window = occupied.window();
+  nav_msgs::OccupancyGrid grid;
+  grid.header.frame_id = frame;
+  grid.header.stamp = ros::Time::now();
+  grid.info.map_load_time = grid.header.stamp;
+  grid.info.resolution = static_cast<float>(matrix.res_g);
+  grid.info.width = grid.info.height = static_cast<std::uint32_t>(window.size);
+  grid.info.origin.position.x = window.corner.x * matrix.res_g;
+  grid.info.origin.position.y = window.corner.y * matrix.res_g;
+  grid.info.origin.orientation.w = 1.0;
+  const Bits above_ground = ~lowBits(matrix.bits_below + 1);
+  for (int y = 0; y < window.size; ++y) {
+    for (int x = 0; x < window.size; ++x) {
+      const Bits of_column = occupied.at(x, y), removed = dynamic.at(x, y);
+      grid.data.push_back(of_column == 0                               ? kUnknown
+                          : (of_column & ~removed & above_ground) != 0 ? kStatic
+                          : removed != 0                               ? kDynamic
+                                                                       : kGround);
+    }
+  }
+  matrix_.publish(grid);
+}
+
+}  // namespace beautymap

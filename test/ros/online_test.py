@@ -1,0 +1,492 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 beautymap contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The node and the nodelet as a user runs them: a real roscore, real processes, `rosbag play --clock`."""
+import contextlib
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+import rosbag
+import rosgraph
+import roslib.packages
+import rospy
+import rostest
+from beautymap.msg import ScanReport
+from beautymap.srv import LoadMap, SaveMap
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import Empty
+from tf2_msgs.msg import TFMessage
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2]
+SHARED = pathlib.Path(os.environ.get("BEAUTYMAP_SHARED", PACKAGE.parent / "shared"))
+SCANS = 40
+NODE = "/beautymap"
+
+
+def executable(name):
+    for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
+        path = pathlib.Path(folder) / "lib/beautymap" / name
+        if path.exists():
+            return str(path)
+    raise RuntimeError(f"{name} is in no workspace of CMAKE_PREFIX_PATH")
+
+
+def wait_for(condition, what, timeout=30.0):
+    end = time.time() + timeout
+    while time.time() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"not within {timeout} s: {what}")
+
+
+def read_pcd(path):
+    """The points as a structured array."""
+    raw = pathlib.Path(path).read_bytes()
+    end = raw.index(b"\n", raw.index(b"DATA ")) + 1
+    head = dict(line.split(None, 1) for line in raw[:end].decode().splitlines() if line[0] != "#")
+    kinds = {"F4": "<f4", "F8": "<f8", "U1": "u1", "U2": "<u2", "U4": "<u4"}
+    types = [kinds[t + s] for t, s in zip(head["TYPE"].split(), head["SIZE"].split())]
+    return numpy.frombuffer(raw, numpy.dtype(list(zip(head["FIELDS"].split(), types))),
+                            int(head["POINTS"]), end)
+
+
+def labels_of(folder_or_stem):
+    """(points sorted by what identifies them, whether each was removed)"""
+    stem = str(folder_or_stem)
+    names = (stem + ".pcd", stem + "_dynamic.pcd")
+    if os.path.isdir(stem):
+        names = (stem + "/cleaned.pcd", stem + "/dynamic.pcd")
+    points = [read_pcd(name) for name in names]
+    removed = numpy.repeat([False, True], [len(p) for p in points])
+    points = numpy.concatenate(points)
+    order = numpy.lexsort([points[name] for name in ("z", "y", "x")])
+    return points[order], removed[order]
+
+
+def agreement(ours, theirs):
+    """The share of points with the same label in two maps that hold the same points."""
+    (a, removed_a), (b, removed_b) = labels_of(ours), labels_of(theirs)
+    assert len(a) == len(b), f"{len(a)} points against {len(b)}"
+    for name in ("x", "y", "z"):
+        assert numpy.abs(a[name] - b[name]).max() < 1e-3
+    return numpy.mean(removed_a == removed_b)
+
+
+def cloud_size(cloud):
+    return cloud.width * cloud.height
+
+
+class Node:
+    """A running node, and what it published."""
+
+    def __init__(self, parameters, nodelet=False):
+        self.reports, self.maps, self.removed, self.dynamic, self.static = [], [], [], [], []
+        self.diagnostics, self.matrices = [], []
+        self.log = tempfile.NamedTemporaryFile(mode="w+", suffix=".log")
+        if rospy.has_param(NODE):
+            rospy.delete_param(NODE)
+        for name, value in {"publish_period": 0.5, **parameters}.items():
+            rospy.set_param(f"{NODE}/{name}", value)
+        command = [executable("beautymap_node"), "__name:=beautymap"]
+        if nodelet:
+            command = [*roslib.packages.find_node("nodelet", "nodelet")[:1], "standalone",
+                       "beautymap/BeautyMapNodelet", "__name:=beautymap"]
+        self.subscribers = [
+            rospy.Subscriber(NODE + topic, kind, into.append, queue_size=1000)
+            for topic, kind, into in (
+                ("/scan_report", ScanReport, self.reports),
+                ("/cleaned_map", PointCloud2, self.maps),
+                ("/removed_points", PointCloud2, self.removed),
+                ("/dynamic_points", PointCloud2, self.dynamic),
+                ("/static_points", PointCloud2, self.static),
+                ("/matrix", OccupancyGrid, self.matrices))]
+        self.subscribers.append(
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self.diagnostics.append))
+        self.process = subprocess.Popen(command, stdout=self.log, stderr=subprocess.STDOUT,
+                                        start_new_session=True,
+                                        env={**os.environ, "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"})
+
+    def wait_until_connected(self):
+        wait_for(lambda: self.subscribers[0].get_num_connections() > 0 and
+                 self.subscribers[3].get_num_connections() > 0 and
+                 self.subscribers[4].get_num_connections() > 0, "the node: " + self.output())
+
+    def output(self):
+        return pathlib.Path(self.log.name).read_text()
+
+    def wait_for_scans(self, count, timeout=60.0):
+        wait_for(lambda: self.reports and self.reports[-1].scans >= count,
+                 f"{count} scans; {len(self.reports)} reports, {self.output()[-2000:]}", timeout)
+        return self.reports[-1]
+
+    def call(self, service, kind, **request):
+        rospy.wait_for_service(f"{NODE}/{service}", timeout=20)
+        return rospy.ServiceProxy(f"{NODE}/{service}", kind)(**request)
+
+    def stop(self):
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGINT)
+            try:
+                self.process.wait(timeout=30)
+            except subprocess.TimeoutExpired:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+        for subscriber in self.subscribers:
+            subscriber.unregister()
+        return self.process.returncode
+
+
+@contextlib.contextmanager
+def running(parameters=None, nodelet=False):
+    node = Node(parameters or {}, nodelet)
+    try:
+        node.wait_until_connected()
+        yield node
+    finally:
+        node.stop()
+        node.log.close()
+
+
+def play(bag, *arguments, rate=2.0):
+    subprocess.run(["rosbag", "play", "--clock", "-q", "-r", str(rate), "-d", "0.7", *arguments,
+                    str(bag)], check=True, timeout=120, stdout=subprocess.DEVNULL)
+
+
+class Online(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("online_test", anonymous=True, disable_signals=True)
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="beautymap-online-"))
+        cls.bag = cls.folder / "street.bag"
+        cls.run_tool("simulate", "--scene", "street", "--sensor", "vlp16", "--scans", SCANS,
+                     "--seed", 2, "--output", cls.bag)
+        cls.offline = cls.folder / "offline"
+        cls.run_tool("replay", cls.bag, "--output", cls.offline)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @staticmethod
+    def run_tool(name, *arguments):
+        done = subprocess.run([executable(f"beautymap_{name}"), *map(str, arguments)],
+                              capture_output=True, text=True, timeout=300, check=False)
+        assert done.returncode == 0, done.stderr
+
+    def parameters(self, **more):
+        return {"cloud_topics": ["/cloud"], "output_folder": str(self.folder / "out"),
+                "queue_size": 100, "online": {"map_voxel": 0.0}, **more}
+
+    def rewrite(self, name, change):
+        """A bag with every message of the simulated one as change(topic, message, t) gives it."""
+        path = self.folder / name
+        with rosbag.Bag(str(self.bag)) as source, rosbag.Bag(str(path), "w") as target:
+            for topic, message, t in source.read_messages():
+                for new_topic, new_message, new_t in change(topic, message, t):
+                    target.write(new_topic, new_message, new_t)
+        return path
+
+    def check_map(self, node, at_least=0.99):
+        """The finished map is that of the replay."""
+        saved = node.call("save_map", SaveMap, path="map.pcd", voxel=0.0, session=False)
+        self.assertTrue(saved.success, saved.message)
+        share = agreement(self.folder / "out/map", self.offline)
+        self.assertGreaterEqual(share, at_least)
+        self.assertGreater(saved.removed_points, 100)
+
+    def check_split(self, node):
+        """Every point of a scan is published once, with header and fields of the input."""
+        wait_for(lambda: len(node.dynamic) >= SCANS and len(node.static) >= SCANS, "the splits")
+        with rosbag.Bag(str(self.bag)) as bag:
+            clouds = [m for _, m, _ in bag.read_messages("/cloud")]
+        for cloud, dynamic, static, report in zip(clouds, node.dynamic, node.static, node.reports):
+            self.assertEqual(dynamic.header.stamp, cloud.header.stamp)
+            self.assertEqual(dynamic.header.frame_id, cloud.header.frame_id)
+            self.assertEqual([f.name for f in dynamic.fields], [f.name for f in cloud.fields])
+            self.assertEqual(cloud_size(dynamic) + cloud_size(static) + report.dropped_points,
+                             cloud_size(cloud))
+            records = {cloud.data[i:i + cloud.point_step]
+                       for i in range(0, len(cloud.data), cloud.point_step)}
+            for i in range(0, len(dynamic.data), dynamic.point_step):
+                self.assertIn(dynamic.data[i:i + dynamic.point_step], records)
+
+    def check_run(self, node):
+        play(self.bag)
+        report = node.wait_for_scans(SCANS)
+        self.assertEqual((report.scans, report.dropped_scans, report.skipped_scans,
+                          report.tf_failures), (SCANS, 0, 0, 0))
+        self.check_split(node)
+        self.check_map(node)
+        wait_for(lambda: node.maps and node.removed and node.matrices, "the map's topics")
+        wait_for(lambda: cloud_size(node.removed[-1]) > 100, "removed points")
+        self.assertEqual(node.maps[-1].header.frame_id, "map")
+        self.assertGreater(len(set(node.matrices[-1].data)), 2)
+        status = wait_for(lambda: [s for a in node.diagnostics for s in a.status
+                                   if "map" in s.name and s.level == 0], "diagnostics")
+        self.assertIn("tf failures", [v.key for v in status[-1].values])
+
+    def test_the_node_cleans_while_a_bag_plays(self):
+        with running(self.parameters()) as node:
+            self.check_run(node)
+            self.check_readme()
+
+    def check_readme(self):
+        """The README's tables name the topics and services that the node has."""
+        publishers, _, services = rosgraph.Master("/online_test").getSystemState()
+        tool_made = ("set_logger_level", "get_loggers", "parameter_descriptions",
+                     "parameter_updates", "set_parameters")
+        names = {name[len(NODE) + 1:] for entries in (publishers, services)
+                 for name, nodes in entries if NODE in nodes and name.startswith(NODE + "/")}
+        names -= set(tool_made)
+        text = (PACKAGE / "README.md").read_text()
+        section = text[text.index("| topic | type |"):text.index("<details><summary>Parameters of")]
+        self.assertEqual(names, set(re.findall(r"^\| `~(\w+)`", section, re.M)))
+
+    def test_the_nodelet_does_the_same(self):
+        with running(self.parameters(), nodelet=True) as node:
+            self.check_run(node)
+
+    def test_odometry_gives_the_poses(self):
+        bag = self.rewrite("odometry.bag", lambda topic, message, t:
+                           [] if topic in ("/tf", "/tf_static") else [(topic, message, t)])
+        with running(self.parameters(pose_source="odometry", odom_topic="/odom")) as node:
+            play(bag)
+            node.wait_for_scans(SCANS)
+            self.check_map(node)
+
+    def test_clouds_may_be_registered_already(self):
+        self.run_tool("convert", self.bag, "--output", self.folder / "registered")
+        # The PCD folder's clouds are in the map frame.
+        clouds = iter(sorted((self.folder / "registered/pcd").iterdir()))
+
+        def register(topic, message, t):
+            if topic == "/cloud":
+                points = read_pcd(next(clouds))
+                message.header.frame_id = "map"
+                message.point_step = points.dtype.itemsize
+                offsets = {n: points.dtype.fields[n][1] for n in points.dtype.names}
+                for field in message.fields:
+                    field.offset = offsets[field.name]
+                message.row_step = len(points) * message.point_step
+                message.width = len(points)
+                message.data = points.tobytes()
+            return [(topic, message, t)]
+
+        bag = self.rewrite("registered.bag", register)
+        with running(self.parameters(sensor_frame="lidar")) as node:
+            play(bag)
+            node.wait_for_scans(SCANS)
+            self.check_map(node)
+
+    def test_registered_clouds_without_sensor_frame_are_refused_with_the_cure(self):
+        def register(topic, message, t):
+            if topic == "/cloud":
+                message.header.frame_id = "map"
+            return [(topic, message, t)]
+
+        bag = self.rewrite("no_sensor.bag", register)
+        with running(self.parameters()) as node:
+            play(bag, rate=4.0)
+            wait_for(lambda: "~sensor_frame" in node.output(), "the warning")
+            self.assertFalse(node.reports)
+
+    def test_a_missing_transform_is_named_and_counted(self):
+        bag = self.rewrite("no_tf.bag", lambda topic, message, t:
+                           [] if topic == "/tf" else [(topic, message, t)])
+        with running(self.parameters(queue_size=10)) as node:
+            play(bag)
+            wait_for(lambda: "no transform from 'lidar' to 'map'" in node.output(), node.output)
+            status = wait_for(lambda: [
+                s for a in node.diagnostics for s in a.status
+                if s.level == 2 and any(v.key == "tf failures" and int(v.value) > 0
+                                        for v in s.values)], "diagnostics")
+            self.assertIn("lidar", status[-1].message)
+            self.assertFalse(node.reports)
+
+    def test_a_transform_that_comes_late_is_waited_for(self):
+        late = rospy.Duration(0.5)
+        bag = self.rewrite("late.bag", lambda topic, message, t:
+                           [(topic, message, t + late if topic == "/tf" else t)])
+        with running(self.parameters()) as node:
+            play(bag)
+            report = node.wait_for_scans(SCANS)
+            self.assertEqual((report.tf_failures, report.dropped_scans), (0, 0))
+            self.assertGreater(report.latency_ms, 100.0)
+            self.check_map(node)
+
+    def test_a_looped_bag_begins_a_new_map_or_goes_on(self):
+        for reset in (True, False):
+            with running(self.parameters(reset_on_time_jump=reset)) as node:
+                play(self.bag, rate=4.0)
+                node.wait_for_scans(SCANS)
+                play(self.bag, rate=4.0)
+                # The transforms that come before the clock jumps are forgotten with those before.
+                node.wait_for_scans(2 * SCANS - 3)
+                time.sleep(0.5)
+                self.assertIn("time jumped back", node.output())
+                loops = node.reports[-1].map_points / len(labels_of(self.offline)[0])
+                self.assertLess(abs(loops - {True: 1.0, False: 2.0}[reset]), 0.1)
+
+    def test_clouds_out_of_order_and_unusable_ones_are_skipped_and_counted(self):
+        held = []
+
+        def spoil(topic, message, t):
+            if topic != "/cloud":
+                return [(topic, message, t)]
+            number = message.header.seq if message.header.seq else len(held)
+            held.append(number)
+            if len(held) == 10:  # comes again after the next one
+                spoil.old = message
+            if len(held) == 12:
+                return [(topic, message, t), (topic, spoil.old, t + rospy.Duration(0.01))]
+            if len(held) == 15:
+                message.width = message.row_step = 0
+                message.data = b""
+            if len(held) == 18:
+                message.fields = [f for f in message.fields if f.name != "z"]
+            if len(held) == 20:
+                data = numpy.frombuffer(message.data, "u1").reshape(-1, message.point_step).copy()
+                data[::2, :12] = 0xff  # NaN
+                message.data = data.tobytes()
+            return [(topic, message, t)]
+
+        bag = self.rewrite("spoiled.bag", spoil)
+        with running(self.parameters()) as node:
+            play(bag)
+            report = node.wait_for_scans(SCANS - 2)
+            self.assertEqual((report.scans, report.skipped_scans), (SCANS - 2, 3))
+            self.assertGreater(max(r.dropped_points for r in node.reports), 1000)
+
+    def test_two_lidars_make_one_map(self):
+        count = [0]
+
+        def split(topic, message, t):
+            if topic != "/cloud":
+                return [(topic, message, t)]
+            count[0] += 1
+            return [("/left" if count[0] % 2 else "/right", message, t)]
+
+        bag = self.rewrite("two.bag", split)
+        with running(self.parameters(cloud_topics=["/left", "/right"])) as node:
+            play(bag)
+            node.wait_for_scans(SCANS)
+            self.check_map(node, 0.98)
+
+    def test_what_was_saved_is_gone_on_with(self):
+        with running(self.parameters()) as node:
+            play(self.bag, "--duration", "2")
+            wait_for(lambda: len(node.reports) >= 15, "some scans")
+            time.sleep(1.0)
+            scans = node.reports[-1].scans
+            self.assertLess(scans, SCANS)
+            saved = node.call("save_map", SaveMap, path="half/a.pcd", voxel=0.0, session=True)
+            self.assertTrue(saved.success, saved.message)
+            points = saved.cleaned_points + saved.removed_points
+            node.call("reset", Empty)
+            empty = node.call("save_map", SaveMap, path="empty.pcd", voxel=0.0, session=False)
+            self.assertFalse(empty.success)
+            self.assertIn("empty", empty.message)
+            loaded = node.call("load_map", LoadMap, path="half/a.session")
+            self.assertTrue(loaded.success, loaded.message)
+            again = node.call("save_map", SaveMap, path="again.pcd", voxel=0.0, session=False)
+            self.assertEqual(again.cleaned_points + again.removed_points, points)
+            self.assertEqual(agreement(self.folder / "out/again", self.folder / "out/half/a"), 1.0)
+            node.call("pause", Empty)
+            play(self.bag, "--duration", "1")
+            time.sleep(0.5)
+            self.assertEqual(node.reports[-1].scans, scans)
+
+    def test_services_stay_in_the_output_folder(self):
+        with running(self.parameters()) as node:
+            play(self.bag, rate=4.0)
+            node.wait_for_scans(SCANS)
+            for path in ("../a.pcd", "/tmp/beautymap_escaped.pcd", "", "a.txt"):
+                saved = node.call("save_map", SaveMap, path=path, voxel=0.0, session=False)
+                self.assertFalse(saved.success, path)
+                self.assertTrue(saved.message)
+            self.assertFalse(os.path.exists("/tmp/beautymap_escaped.pcd"))
+            # A folder that cannot be written: the service says so, the map stays.
+            (self.folder / "out/file.pcd").write_text("")
+            saved = node.call("save_map", SaveMap, path="file.pcd/a.pcd", voxel=0.0, session=False)
+            self.assertFalse(saved.success)
+            self.assertTrue(node.call("save_map", SaveMap, path="a", voxel=0.5, session=False).success)
+            self.assertFalse(node.call("load_map", LoadMap, path="a.session").success)
+            self.assertFalse(node.call("load_map", LoadMap, path="../a.session").success)
+
+    def test_shutdown_saves_the_map_when_asked_to(self):
+        with running(self.parameters(save_on_exit=True)) as node:
+            play(self.bag, rate=4.0)
+            node.wait_for_scans(SCANS)
+            self.assertEqual(node.stop(), 0)
+        self.assertEqual(len(labels_of(self.folder / "out/exit")[0]),
+                         len(labels_of(self.offline)[0]))
+        self.assertTrue((self.folder / "out/exit.session").exists())
+
+    def test_a_corrected_path_makes_the_map_again(self):
+        with rosbag.Bag(str(self.bag)) as bag:
+            odometry = [m for _, m, _ in bag.read_messages("/odom")]
+        publisher = rospy.Publisher("/corrected_path", Path, queue_size=2, latch=True)
+        with running(self.parameters(loop_closure=True)) as node:
+            play(self.bag)
+            node.wait_for_scans(SCANS)
+            path = Path()
+            path.header.frame_id = "map"
+            for message in odometry[::5]:
+                pose = PoseStamped(header=message.header, pose=message.pose.pose)
+                pose.pose.position.z += 3.0
+                path.poses.append(pose)
+            publisher.publish(path)
+            wait_for(lambda: "the map was made again" in node.output(), "the corrected map")
+            saved = node.call("save_map", SaveMap, path="map.pcd", voxel=0.0, session=False)
+            self.assertTrue(saved.success, saved.message)
+        publisher.unregister()
+        (moved, removed), (before, removed_before) = (labels_of(self.folder / "out/map"),
+                                                      labels_of(self.offline))
+        self.assertEqual(len(moved), len(before))
+        self.assertLess(abs(moved["z"].mean() - before["z"].mean() - 3.0), 1e-3)
+        self.assertLess(abs(removed.mean() - removed_before.mean()), 0.01)
+
+    def test_unknown_and_bad_parameters_are_refused_by_name(self):
+        for parameters, expected in (({"map_frme": "map"}, "~map_frme"),
+                                     ({"matrix": {"res_g": -1.0}}, "matrix.res_g"),
+                                     ({"matrix": {"resolution": 1.0}}, "matrix.resolution"),
+                                     ({"queue_size": 0}, "~queue_size"),
+                                     ({"evidence": {"enabled": False}}, "evidence.enabled"),
+                                     ({"pose_source": "gps"}, "~pose_source")):
+            node = Node(self.parameters(**parameters))
+            self.assertEqual(node.process.wait(timeout=20), 1)
+            self.assertIn(expected, node.output())
+            node.stop()
+
+    def test_the_real_drive_gives_the_map_of_the_replay(self):
+        drive = SHARED / "data/kitti_0005.bag"
+        if not drive.exists():
+            self.skipTest(f"{drive} is not here")
+        self.run_tool("replay", drive, "--output", self.folder / "drive")
+        with running(self.parameters(cloud_topics=["/velodyne_points"])) as node:
+            play(drive, rate=1.0)
+            report = node.wait_for_scans(154)
+            self.assertEqual(report.dropped_scans, 0)
+            saved = node.call("save_map", SaveMap, path="drive.pcd", voxel=0.0, session=False)
+            self.assertTrue(saved.success, saved.message)
+        share = agreement(self.folder / "out/drive", self.folder / "drive")
+        self.assertGreaterEqual(share, 0.99)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("beautymap", "online", Online, sys.argv)
