@@ -11,7 +11,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
@@ -24,9 +23,10 @@ import rostest
 from beautymap.msg import ScanReport
 from beautymap.srv import LoadMap, SaveMap
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseStamped
-from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from nav_msgs.msg import OccupancyGrid, Path
 from sensor_msgs.msg import PointCloud2
+from std_msgs.msg import Header
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
@@ -94,7 +94,7 @@ def cloud_size(cloud):
 class Node:
     """A running node, and what it published."""
 
-    def __init__(self, parameters, nodelet=False):
+    def __init__(self, parameters, nodelet=False, launch=None):
         self.reports, self.maps, self.removed, self.dynamic, self.static = [], [], [], [], []
         self.diagnostics, self.matrices = [], []
         self.log = tempfile.NamedTemporaryFile(mode="w+", suffix=".log")
@@ -106,6 +106,8 @@ class Node:
         if nodelet:
             command = [*roslib.packages.find_node("nodelet", "nodelet")[:1], "standalone",
                        "beautymap/BeautyMapNodelet", "__name:=beautymap"]
+        if launch:
+            command = ["roslaunch", *launch]
         self.subscribers = [
             rospy.Subscriber(NODE + topic, kind, into.append, queue_size=1000)
             for topic, kind, into in (
@@ -152,8 +154,8 @@ class Node:
 
 
 @contextlib.contextmanager
-def running(parameters=None, nodelet=False):
-    node = Node(parameters or {}, nodelet)
+def running(parameters=None, nodelet=False, launch=None):
+    node = Node(parameters or {}, nodelet, launch)
     try:
         node.wait_until_connected()
         yield node
@@ -269,15 +271,17 @@ class Online(unittest.TestCase):
             node.wait_for_scans(SCANS)
             self.check_map(node)
 
-    def test_clouds_may_be_registered_already(self):
-        self.run_tool("convert", self.bag, "--output", self.folder / "registered")
-        # The PCD folder's clouds are in the map frame.
-        clouds = iter(sorted((self.folder / "registered/pcd").iterdir()))
+    def registering(self, frame="map"):
+        """What turns the bag's clouds into registered ones: those of its PCD folder."""
+        folder = self.folder / "registered"
+        if not folder.exists():
+            self.run_tool("convert", self.bag, "--output", folder)
+        clouds = iter(sorted((folder / "pcd").iterdir()))
 
         def register(topic, message, t):
             if topic == "/cloud":
                 points = read_pcd(next(clouds))
-                message.header.frame_id = "map"
+                message.header.frame_id = frame
                 message.point_step = points.dtype.itemsize
                 offsets = {n: points.dtype.fields[n][1] for n in points.dtype.names}
                 for field in message.fields:
@@ -287,11 +291,80 @@ class Online(unittest.TestCase):
                 message.data = points.tobytes()
             return [(topic, message, t)]
 
-        bag = self.rewrite("registered.bag", register)
+        return register
+
+    def test_clouds_may_be_registered_already(self):
+        bag = self.rewrite("registered.bag", self.registering())
         with running(self.parameters(sensor_frame="lidar")) as node:
             play(bag)
             node.wait_for_scans(SCANS)
             self.check_map(node)
+
+    def check_preset(self, preset, change):
+        bag = self.rewrite(preset + ".bag", change)
+        with running(launch=[str(PACKAGE / "launch/online.launch"), "preset:=" + preset,
+                             "sensor:=vlp16", "map_voxel:=0",
+                             f"output_folder:={self.folder / 'out'}"]) as node:
+            play(bag)
+            node.wait_for_scans(SCANS)
+            self.check_map(node)
+
+    @staticmethod
+    def retold(message, parent, child):
+        """The simulated pose as another odometry tells it."""
+        parts = message.transforms if hasattr(message, "transforms") else [message]
+        for part in parts:
+            part.header.frame_id, part.child_frame_id = parent, child
+        return message
+
+    def test_the_preset_for_fast_lio(self):
+        register = self.registering("camera_init")
+
+        def change(topic, message, t):
+            if topic == "/cloud":
+                return [("/cloud_registered", register(topic, message, t)[0][1], t)]
+            message = self.retold(message, "camera_init", "body")
+            return [("/Odometry" if topic == "/odom" else topic, message, t)]
+
+        self.check_preset("fast_lio", change)
+
+    def test_the_preset_for_lio_sam(self):
+        register = self.registering("odom")
+
+        def change(topic, message, t):
+            if topic == "/cloud":
+                return [("/lio_sam/mapping/cloud_registered", register(topic, message, t)[0][1], t)]
+            if topic == "/tf":
+                return [(topic, self.retold(message, "odom", "lidar_link"), t)]
+            return []
+
+        self.check_preset("lio_sam", change)
+
+    def test_the_preset_for_kiss_icp(self):
+        def change(topic, message, t):
+            if topic == "/cloud":
+                return [("/kiss/frame", message, t)]
+            if topic == "/odom":
+                return [("/kiss/odometry", self.retold(message, "odom_lidar", "lidar"), t)]
+            return []
+
+        self.check_preset("kiss_icp", change)
+
+    def test_the_presets_for_clouds_of_the_driver(self):
+        def change(topic, message, t):
+            if topic == "/cloud":
+                message.header.frame_id = "velodyne"
+                return [("/velodyne_points", message, t)]
+            if topic == "/tf":
+                moving = self.retold(message, "odom", "velodyne").transforms[0]
+                base = TransformStamped(header=Header(stamp=moving.header.stamp, frame_id="map"),
+                                        child_frame_id="odom")
+                base.transform.rotation.w = 1.0
+                return [(topic, TFMessage([base, moving]), t)]
+            return []
+
+        for preset in ("lego_loam", "hdl_graph_slam"):
+            self.check_preset(preset, change)
 
     def test_registered_clouds_without_sensor_frame_are_refused_with_the_cure(self):
         def register(topic, message, t):
