@@ -78,7 +78,7 @@ class BeamSums {
       rows_.push_back(beams.row(wrapped(u, beams.azimuthPixels())) + first_slope -
                       beams.firstSlope());
     }
-    const auto size = static_cast<std::size_t>(last_slope - first_slope + 1);
+    const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
     all_.resize(size + 2 * kLanes);
     passed_.resize(size + 2 * kLanes);
     const BeamImage::Pixel limit = view.behind;
@@ -108,7 +108,7 @@ class BeamSums {
 
  private:
   /// As many pixels as every SIMD unit takes at once.
-  static constexpr int kLanes = 4;
+  static constexpr std::size_t kLanes = 4;
   using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
   static_assert(2 * kLanes <= BeamImage::kPadding, "reads that far beyond a row");
 

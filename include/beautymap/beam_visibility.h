@@ -52,7 +52,7 @@ class BeamImage {
   const Pixel* row(int azimuth) const {
     return pixels_.data() + static_cast<std::ptrdiff_t>(azimuth) * (last_slope_ - first_slope_ + 1);
   }
-  static constexpr int kPadding = 8;
+  static constexpr std::size_t kPadding = 8;
   /// The farthest beam of one azimuth, as a pixel.
   Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
 
