@@ -23,9 +23,11 @@ void shiftCounts(std::uint32_t* counts, int bins, long shift) {
 }  // namespace
 
 void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& config) {
-  const double up = static_cast<double>(tile.ground[column]) - bottom;
-  tile.ground[column] = bottom;
-  const int bits = static_cast<int>(std::lround(up / config.matrix.res_h));
+  const double wanted = static_cast<double>(tile.ground[column]) - bottom;
+  const int bits = static_cast<int>(std::lround(wanted / config.matrix.res_h));
+  // By whole bits, so that no cell ever comes to lie beside its points.
+  const double up = bits * config.matrix.res_h;
+  tile.ground[column] -= static_cast<float>(up);
   const Bits mask = lowBits(config.matrix.n_bit);
   const auto move = [&](Bits& cells) { cells = shifted(cells, bits) & mask; };
   const Bits above = bits > 0 ? tile.occupied[column] & ~lowBits(config.matrix.n_bit - bits) : 0;
@@ -55,7 +57,7 @@ bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift
   if (holds_nothing) tile.ground[column] = bottom;
   if (holds_nothing || std::abs(old - bottom) <= max_drift) return false;
   moveBottom(tile, column, bottom, config);
-  return true;
+  return tile.ground[column] != old;
 }
 
 std::array<float, Tile::kColumns> groundOfEmptyColumns(const Tile& tile) {

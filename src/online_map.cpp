@@ -108,7 +108,10 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     if (!tile.stale_ground[column] || tile.lowest[column] == Tile::kNoHeight) continue;
     const int x = static_cast<int>(column) >> Tile::kShift;
     const int y = static_cast<int>(column) & (Tile::kSide - 1);
-    anchor(column, coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height);
+    const float ground = coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height;
+    // A column that was seen through a gap, beside others of which only a ceiling was seen yet,
+    // must not be lifted over its points: what lies below its bits is in no cell.
+    anchor(column, std::min(ground, tile.lowest[column] + below));
   }
   tile.stale_ground.reset();
   const auto empty = groundOfEmptyColumns(tile);
@@ -147,8 +150,7 @@ void OnlineMap::addSeenFree() {
   clock.lap("beam_image");
   const int height = static_cast<int>(config_.online.free_height / config_.matrix.res_h);
   const Bits remembered =
-      lowBits(std::min(config_.matrix.bits_below + height, config_.matrix.n_bit)) &
-      ~lowBits(config_.matrix.bits_below);
+      lowBits(std::min(config_.matrix.bits_below + height, config_.matrix.n_bit));
   BitGrid candidates(hits_.window(), 0);
   HeightGrid ground(hits_.window(), Tile::kNoHeight);
   forEachColumn(std::as_const(map_), candidates.window(),

@@ -208,7 +208,7 @@ struct AgreementConfig {
 struct OnlineConfig {
   double map_voxel = 0.1;
   double radius = 0.0;
-  double free_height = 4.0;
+  double free_height = 12.0;
   double ground_drift = 0.1;
   double live_share = 0.2;
   int live_rounds = 16;

@@ -10,9 +10,10 @@
 
 namespace beautymap {
 
-/// Moves the bottom of a column to another height [m]: its cells, their evidence and the counts of
-/// heights near the ground follow by the nearest whole number of bits and bins. What comes to lie
-/// above the highest bit counts as that bit, what comes to lie below the lowest is lost.
+/// Moves the bottom of a column by whole bits as near as possible to a height [m]; its cells, their
+/// evidence and the counts of heights near the ground follow. Whole bits, because a cell that came
+/// to lie beside its points would be judged by the evidence of others. What comes to lie above the
+/// highest bit counts as that bit, what comes to lie below the lowest is lost.
 void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& config);
 
 /// Sets the bottom of a column to an estimate [m]: at once where the column holds nothing,

@@ -121,7 +121,6 @@ TEST(OnlineMap, ScansOfAKnownGroundGiveTheMapOfAReplay) {
   // With the ground known from the first scan no column is anchored again, and with all heights
   // remembered the evidence is the same.
   Config config;
-  config.online.free_height = 20.0;
   std::vector<LabelledScan> scans;
   for (int i = 0; i < 8; ++i) scans.push_back(look({}));
   for (int i = 0; i < 10; ++i) scans.push_back(look({person(4, -3 + 0.4 * i)}));

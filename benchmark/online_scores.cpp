@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// beautymap_online_scores INPUT [group.parameter=value...]: what the labels of an input say about
+// the online mode, beside the replay of the same scans. Each point counts with the class it got: no
+// neighbour within 0.05 m saves it.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <utility>
+
+#include "beautymap/evaluation.h"
+#include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/scan_conversion.h"
+#include "beautymap/map_cleaner.h"
+#include "beautymap/online_map.h"
+
+namespace beautymap {
+namespace {
+
+using Classes = std::vector<PointClass>;
+
+struct LabelledScan {
+  Scan scan;
+  std::vector<bool> moving;
+};
+
+std::vector<LabelledScan> readAll(const std::string& input) {
+  const auto source = openScanSource({input}, SourceOptions());
+  std::vector<LabelledScan> scans;
+  SourceScan read;
+  while (source->next(read)) {
+    scans.emplace_back();
+    convertScan(read, scans.back().scan);
+    const FieldReader label(read.cloud, "label");
+    for (std::size_t i = 0; i < read.cloud.width; ++i) {
+      scans.back().moving.push_back(source->isMoving(static_cast<std::uint32_t>(label(i))));
+    }
+  }
+  return scans;
+}
+
+void count(const LabelledScan& scan, const Classes& classes, Score& score) {
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const bool kept = classes[i] == PointClass::kStatic;
+    ++(scan.moving[i] ? score.dynamic_points : score.static_points);
+    if (kept) ++(scan.moving[i] ? score.kept_dynamic : score.kept_static);
+  }
+}
+
+void print(const char* name, const Score& score) {
+  std::printf("%-14s SA %.2f DA %.2f AA %.2f HA %.2f\n", name, score.SA(), score.DA(), score.AA(),
+              score.HA());
+}
+
+void printTimes(const char* name, std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  std::printf("%-14s median %.1f ms, 99th percentile %.1f ms\n", name, ms[ms.size() / 2],
+              ms[ms.size() * 99 / 100]);
+}
+
+Classes classesOf(const OnlineMap& map, const Scan& scan) {
+  DroppedPoints dropped;
+  const MatrixConfig& matrix = map.config().matrix;
+  const PlacedScan placed =
+      placeScan(scan, map.zOrigin(), matrix.res_g, map.config().scan, dropped);
+  Classes classes(scan.cloud.size(), PointClass::kDropped);
+  auto source = placed.source_index.begin();
+  forEachTilePoint(
+      map.map(), placed, matrix.res_g, [&](const Tile* tile, std::size_t column, float z) {
+        classes[*source++] =
+            map.isDynamic(*tile, column, z) ? PointClass::kDynamic : PointClass::kStatic;
+      });
+  return classes;
+}
+
+void run(const std::string& input, const Config& config) {
+  const std::vector<LabelledScan> scans = readAll(input);
+  if (scans.empty()) throw InputError("there are no scans");
+  Score live, finished, offline;
+  std::vector<double> hits_ms, free_ms;
+  OnlineMap map(config);
+  for (const LabelledScan& scan : scans) {
+    using Clock = std::chrono::steady_clock;
+    using Milliseconds = std::chrono::duration<double, std::milli>;
+    const auto begin = Clock::now();
+    const Classes& classes = map.addHits(scan.scan);
+    hits_ms.push_back(Milliseconds(Clock::now() - begin).count());
+    count(scan, classes, live);
+    const auto published = Clock::now();
+    map.addSeenFree();
+    map.settle();
+    free_ms.push_back(Milliseconds(Clock::now() - published).count());
+  }
+  MapCleaner cleaner(config);
+  for (const LabelledScan& scan : scans) cleaner.observe(scan.scan);
+  cleaner.estimateGround();
+  for (const LabelledScan& scan : scans) cleaner.encode(scan.scan);
+  for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
+  cleaner.segmentGround();
+  std::size_t points = 0, agreeing = 0;
+  for (const LabelledScan& scan : scans) {
+    const Classes replayed = cleaner.classify(scan.scan);
+    const Classes online = classesOf(std::as_const(map), scan.scan);
+    count(scan, replayed, offline);
+    count(scan, online, finished);
+    points += online.size();
+    for (std::size_t i = 0; i < online.size(); ++i) agreeing += online[i] == replayed[i] ? 1 : 0;
+  }
+  print("replay", offline);
+  print("finished map", finished);
+  print("live split", live);
+  std::printf("%-14s %.3f %% of the points\n", "same class",
+              100.0 * static_cast<double>(agreeing) / static_cast<double>(points));
+  printTimes("until classes", hits_ms);
+  printTimes("after them", free_ms);
+}
+
+}  // namespace
+}  // namespace beautymap
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: beautymap_online_scores INPUT [group.parameter=value...]\n");
+    return 2;
+  }
+  try {
+    beautymap::Config config;
+    for (int i = 2; i < argc; ++i) beautymap::setParameter(config, argv[i]);
+    beautymap::run(argv[1], config);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "beautymap_online_scores: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
