@@ -3,6 +3,7 @@
 #include "beautymap/agreement.h"
 
 #include <array>
+#include <vector>
 
 namespace beautymap {
 namespace {
@@ -32,16 +33,31 @@ void excludeCells(BitGrid& cells, const BitGrid& excluded) {
   }
 }
 
-/// @return whether any cell is new.
-bool addCells(BitGrid& cells, const BitGrid& added) {
-  Bits any = 0;
-  for (int x = 0; x < cells.size(); ++x) {
-    for (int y = 0; y < cells.size(); ++y) {
-      any |= added.at(x, y) & ~cells.at(x, y);
-      cells.at(x, y) |= added.at(x, y);
+/// The leaning and unknown cells of one column that join dynamic ones.
+Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y,
+                     int ground_bit, const AgreementConfig& config) {
+  const Bits counted = ~lowBits(ground_bit + 1);
+  const Bits leaning = window.leaning.at(x, y) & ~dynamic.at(x, y);
+  const Bits unknown = window.unknown.at(x, y) & ~dynamic.at(x, y);
+  if ((leaning | unknown) == 0) return 0;
+  const Neighbourhood dynamic_around = around(dynamic, x, y);
+  Bits near = 0;
+  for (const Bits column : dynamic_around) near |= column & counted;
+  near |= near << 1 | near >> 1;
+  if (((leaning | unknown) & near) == 0) return 0;
+  const Neighbourhood occupied = around(window.occupied, x, y);
+  const Bits staying = window.occupied.at(x, y) & ~dynamic.at(x, y) & counted;
+  Bits joining = 0;
+  for (Bits rest = (leaning | unknown) & near & ~(staying << 1); rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    const int count = countAround(dynamic_around, bit, counted);
+    const bool leans = (leaning >> bit & 1) != 0;
+    const double share = leans ? config.join_share : config.min_share;
+    if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
+      joining |= lowestBit(rest);
     }
   }
-  return any != 0;
+  return joining;
 }
 
 }  // namespace
@@ -73,31 +89,36 @@ BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
 BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
                      const AgreementConfig& config) {
   BitGrid joining(dynamic.window(), 0);
-  const Bits counted = ~lowBits(ground_bit + 1);
   for (int x = 1; x + 1 < dynamic.size(); ++x) {
     for (int y = 1; y + 1 < dynamic.size(); ++y) {
-      const Bits leaning = window.leaning.at(x, y) & ~dynamic.at(x, y);
-      const Bits unknown = window.unknown.at(x, y) & ~dynamic.at(x, y);
-      if ((leaning | unknown) == 0) continue;
-      const Neighbourhood dynamic_around = around(dynamic, x, y);
-      Bits near = 0;
-      for (const Bits column : dynamic_around) near |= column & counted;
-      near |= near << 1 | near >> 1;
-      if (((leaning | unknown) & near) == 0) continue;
-      const Neighbourhood occupied = around(window.occupied, x, y);
-      const Bits staying = window.occupied.at(x, y) & ~dynamic.at(x, y) & counted;
-      for (Bits rest = (leaning | unknown) & near & ~(staying << 1); rest != 0; rest &= rest - 1) {
-        const int bit = lowestBitIndex(rest);
-        const int count = countAround(dynamic_around, bit, counted);
-        const bool leans = (leaning >> bit & 1) != 0;
-        const double share = leans ? config.join_share : config.min_share;
-        if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
-          joining.at(x, y) |= lowestBit(rest);
-        }
-      }
+      joining.at(x, y) = joiningInColumn(window, dynamic, x, y, ground_bit, config);
     }
   }
   return joining;
+}
+
+void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
+                 const AgreementConfig& config) {
+  struct Column {
+    int x, y;
+    Bits joining;
+  };
+  std::vector<Column> growing;  // the columns that can
+  for (int x = 1; x + 1 < dynamic.size(); ++x) {
+    for (int y = 1; y + 1 < dynamic.size(); ++y) {
+      const Bits cells = (window.leaning.at(x, y) | window.unknown.at(x, y)) & ~dynamic.at(x, y);
+      if (cells != 0) growing.push_back({x, y, 0});
+    }
+  }
+  for (int round = 0; round < config.join_rounds; ++round) {
+    Bits any = 0;
+    for (Column& column : growing) {
+      column.joining = joiningInColumn(window, dynamic, column.x, column.y, ground_bit, config);
+      any |= column.joining;
+    }
+    if (any == 0) break;
+    for (const Column& column : growing) dynamic.at(column.x, column.y) |= column.joining;
+  }
 }
 
 int agreementMargin(const AgreementConfig& config) { return 1 + config.join_rounds; }
@@ -105,9 +126,7 @@ int agreementMargin(const AgreementConfig& config) { return 1 + config.join_roun
 BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
   BitGrid dynamic = window.suspected;
   excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
-  for (int round = 0; round < config.join_rounds; ++round) {
-    if (!addCells(dynamic, joiningCells(window, dynamic, ground_bit, config))) break;
-  }
+  growObjects(window, dynamic, ground_bit, config);
   return dynamic;
 }
 

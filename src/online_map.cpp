@@ -203,8 +203,10 @@ void OnlineMap::settle() {
 BitGrid OnlineMap::dynamicInScan() const {
   const ColumnWindow& window = hits_.window();
   const Bits above_ground = ~lowBits(config_.matrix.bits_below + 1);
-  EvidenceWindow cells{BitGrid(window, 0), BitGrid(window, 0), BitGrid(window, 0),
-                       BitGrid(window, 0), BitGrid(window, 0)};
+  EvidenceWindow cells;
+  for (BitGrid* grid : {&cells.occupied, &cells.suspected, &cells.leaning, &cells.unknown}) {
+    *grid = BitGrid(window, 0);
+  }
   forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
     const Bits hit = hits_.at(x, y) & above_ground;
     if (hit == 0) return;
@@ -219,14 +221,9 @@ BitGrid OnlineMap::dynamicInScan() const {
   AgreementConfig agreement = config_.agreement;
   agreement.min_share = config_.online.live_share;
   agreement.join_share = 0.5 * config_.online.live_share;
+  agreement.join_rounds = config_.online.live_rounds;
   BitGrid dynamic = std::move(cells.suspected);
-  for (int round = 0; round < config_.online.live_rounds; ++round) {
-    const BitGrid joining = joiningCells(cells, dynamic, config_.matrix.bits_below, agreement);
-    if (joining.isAll(0)) break;
-    for (int x = 0; x < window.size; ++x) {
-      for (int y = 0; y < window.size; ++y) dynamic.at(x, y) |= joining.at(x, y);
-    }
-  }
+  growObjects(cells, dynamic, config_.matrix.bits_below, agreement);
   return dynamic;
 }
 

@@ -31,6 +31,10 @@ BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
 BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
                      const AgreementConfig& config);
 
+/// Adds the joining cells to the dynamic ones, round by round.
+void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
+                 const AgreementConfig& config);
+
 /// How far from its border a window is needed to know the dynamic cells within [columns].
 int agreementMargin(const AgreementConfig& config);
 

@@ -17,6 +17,9 @@ constexpr double kWarningPeriod = 5.0;  // [s]
 const ros::Duration kTfMemory(30.0);
 // Clocks are adjusted by less, bags that loop jump by more.
 const ros::Duration kJump(0.5);
+constexpr auto kStragglers = std::chrono::seconds(2);
+// A driver that was restarted may have another clock.
+constexpr int kNewTime = 10;
 
 }  // namespace
 
@@ -79,6 +82,7 @@ void CloudInput::checkTime() {
     ROS_WARN("time jumped back by %.1f s (does a bag loop, or was the simulation reset?)",
              (now_ - now).toSec());
     forgetWhatWaits();
+    jumped_ = Clock::now();
     listener_.time_jumped_back();
   }
   now_ = now;
@@ -140,7 +144,20 @@ bool CloudInput::refuse(const Cloud& cloud, std::size_t topic) {
     count(&Counts::unusable, problem);
     return true;
   }
-  if (cloud.header.stamp < last_stamp_[topic]) {
+  // On its way when time jumped: it would make all that follow it too old.
+  const bool is_straggler = jumped_ && Clock::now() - *jumped_ < kStragglers &&
+                            cloud.header.stamp > ros::Time::now() + kJump;
+  if (is_straggler) {
+    count(&Counts::out_of_order, "a cloud from before time jumped back: skipped");
+    return true;
+  }
+  if (cloud.header.stamp >= last_stamp_[topic]) {
+    older_in_a_row_ = 0;
+  } else if (++older_in_a_row_ >= kNewTime) {
+    ROS_WARN("the clouds' stamps went back and stay there: going on with them");
+    forgetWhatWaits();
+    older_in_a_row_ = 0;
+  } else {
     problem = "a cloud on " + options_.cloud_topics[topic] + " is " +
               std::to_string((last_stamp_[topic] - cloud.header.stamp).toSec()) +
               " s older than the one before: skipped";

@@ -89,7 +89,9 @@ class CloudInput {
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::Time> last_stamp_;  ///< of each topic
   ros::WallTimer timer_;
-  ros::Time now_;  ///< at the last check
+  ros::Time now_;                            ///< at the last check
+  std::optional<Clock::time_point> jumped_;  ///< when time jumped back last
+  int older_in_a_row_ = 0;                   ///< clouds older than the one before
 
   mutable std::mutex mutex_;
   std::map<const Cloud*, std::pair<Clock::time_point, Cloud::ConstPtr>> received_;
