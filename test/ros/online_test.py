@@ -134,7 +134,7 @@ class Node:
     def output(self):
         return pathlib.Path(self.log.name).read_text()
 
-    def wait_for_scans(self, count, timeout=60.0):
+    def wait_for_scans(self, count, timeout=180.0):
         wait_for(lambda: self.reports and self.reports[-1].scans >= count,
                  f"{count} scans; {len(self.reports)} reports, {self.output()[-2000:]}", timeout)
         return self.reports[-1]
@@ -169,7 +169,7 @@ def running(parameters=None, nodelet=False, launch=None):
 
 def play(bag, *arguments, rate=2.0):
     subprocess.run(["rosbag", "play", "--clock", "-q", "-r", str(rate), "-d", "0.7", *arguments,
-                    str(bag)], check=True, timeout=120, stdout=subprocess.DEVNULL)
+                    str(bag)], check=True, timeout=300, stdout=subprocess.DEVNULL)
 
 
 class Online(unittest.TestCase):
@@ -195,7 +195,7 @@ class Online(unittest.TestCase):
 
     def parameters(self, **more):
         return {"cloud_topics": ["/cloud"], "output_folder": str(self.folder / "out"),
-                "queue_size": 100, "online": {"map_voxel": 0.0}, **more}
+                "queue_size": 1000, "online": {"map_voxel": 0.0}, **more}
 
     def rewrite(self, name, change):
         """A bag with every message of the simulated one as change(topic, message, t) gives it."""
