@@ -96,7 +96,6 @@ void run(const std::string& input, const Config& config) {
   MapCleaner cleaner(config);
   for (const LabelledScan& scan : scans) cleaner.observe(scan.scan);
   cleaner.estimateGround();
-  for (const LabelledScan& scan : scans) cleaner.encode(scan.scan);
   for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
   cleaner.segmentGround();
   std::size_t points = 0, agreeing = 0;

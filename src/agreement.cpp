@@ -86,17 +86,6 @@ BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
   return unsupported;
 }
 
-BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
-                     const AgreementConfig& config) {
-  BitGrid joining(dynamic.window(), 0);
-  for (int x = 1; x + 1 < dynamic.size(); ++x) {
-    for (int y = 1; y + 1 < dynamic.size(); ++y) {
-      joining.at(x, y) = joiningInColumn(window, dynamic, x, y, ground_bit, config);
-    }
-  }
-  return joining;
-}
-
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
   struct Column {

@@ -4,6 +4,11 @@
 
 namespace beautymap {
 
+ColumnWindow regionOfInterest(const PlacedScan& scan, const MatrixConfig& config) {
+  const int half = std::max(1, static_cast<int>(0.5 * config.roi_size / config.res_g));
+  return {{scan.anchor.x - half, scan.anchor.y - half}, 2 * half + 1};
+}
+
 BitGrid encodeScan(const PlacedScan& scan, const HeightGrid& map_ground,
                    const MatrixConfig& config) {
   const ColumnWindow& window = map_ground.window();

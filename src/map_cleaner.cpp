@@ -120,7 +120,7 @@ void MapCleaner::findDynamic(ScanView& view) const {
 
 void MapCleaner::findFree(ScanView& view) const {
   StageClock clock(view.times);
-  const ColumnWindow window = windowOf(view.placed);
+  const ColumnWindow window = regionOfInterest(view.placed, config_.matrix);
   const HeightGrid ground = map_.extract(window, &Tile::ground, Tile::kNoHeight);
   view.hit = encodeScan(view.placed, ground, config_.matrix);
   clock.lap("binary_encoding");
@@ -198,14 +198,8 @@ void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) cons
   clock.lap("classifying");
 }
 
-ColumnWindow MapCleaner::windowOf(const PlacedScan& scan) const {
-  const int half =
-      std::max(1, static_cast<int>(0.5 * config_.matrix.roi_size / config_.matrix.res_g));
-  return {{scan.anchor.x - half, scan.anchor.y - half}, 2 * half + 1};
-}
-
 MapWindow MapCleaner::windowAround(const PlacedScan& scan) const {
-  const ColumnWindow window = windowOf(scan);
+  const ColumnWindow window = regionOfInterest(scan, config_.matrix);
   return {map_.extract(window, &Tile::occupied, Bits{0}),
           map_.extract(window, &Tile::ground, Tile::kNoHeight),
           map_.extract(window, &Tile::below_ground, std::uint8_t{0})};

@@ -132,15 +132,9 @@ void OnlineMap::addOccupied() {
                    });
 }
 
-ColumnWindow OnlineMap::window() const {
-  const int half =
-      std::max(1, static_cast<int>(0.5 * config_.matrix.roi_size / config_.matrix.res_g));
-  return {{placed_.anchor.x - half, placed_.anchor.y - half}, 2 * half + 1};
-}
-
 void OnlineMap::addHitEvidence() {
-  hits_ =
-      encodeScan(placed_, map_.extract(window(), &Tile::ground, Tile::kNoHeight), config_.matrix);
+  const ColumnWindow window = regionOfInterest(placed_, config_.matrix);
+  hits_ = encodeScan(placed_, map_.extract(window, &Tile::ground, Tile::kNoHeight), config_.matrix);
   addEvidence(hits_, true);
 }
 

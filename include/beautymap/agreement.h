@@ -23,15 +23,11 @@ struct EvidenceWindow {
 BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
                          const AgreementConfig& config);
 
-/// The leaning and unknown cells that join dynamic ones, as parts of the same object: a share of
-/// their occupied neighbours is dynamic, and they do not rest on a cell that stays (what is seen
-/// over the roof of a parked car is no reason to remove the roof).
+/// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
+/// object: a share of their occupied neighbours is dynamic, and they do not rest on a cell that
+/// stays (what is seen over the roof of a parked car is no reason to remove the roof). Columns at
+/// the window's border do not change.
 /// @param dynamic  the dynamic cells of the same window
-/// @return  for the columns one in from the window's border; no bits at the border
-BitGrid joiningCells(const EvidenceWindow& window, const BitGrid& dynamic, int ground_bit,
-                     const AgreementConfig& config);
-
-/// Adds the joining cells to the dynamic ones, round by round.
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config);
 

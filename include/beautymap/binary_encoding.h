@@ -75,6 +75,10 @@ void forEachColumnPoint(const PlacedScan& scan, double res_g, F f) {
   }
 }
 
+/// The region of interest of a scan: the columns around its sensor in which it is compared with the
+/// map.
+ColumnWindow regionOfInterest(const PlacedScan& scan, const MatrixConfig& config);
+
 /// The scan's matrix M_scan in a window of the map, against the map's ground heights.
 BitGrid encodeScan(const PlacedScan& scan, const HeightGrid& map_ground,
                    const MatrixConfig& config);

@@ -87,7 +87,6 @@ class MapCleaner {
   double zOrigin() const { return z_origin_.value_or(0.0); }
 
  private:
-  ColumnWindow windowOf(const PlacedScan& scan) const;
   MapWindow windowAround(const PlacedScan& scan) const;
   /// The published judgement of one scan: every candidate it leaves is dynamic.
   void findDynamic(ScanView& view) const;

@@ -67,7 +67,6 @@ class OnlineMap {
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
   BitGrid dynamicInScan() const;
   void classify(const Scan& scan);
-  ColumnWindow window() const;
 
   Config config_;
   MapJudgement judgement_;

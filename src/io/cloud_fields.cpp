@@ -3,6 +3,7 @@
 #include "beautymap/io/cloud_fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -300,6 +301,15 @@ void moveCloud(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_
                  : store<float>(record + offsets[axis], point[axis]);
     }
   }
+}
+
+std::uint64_t voxelKey(const Eigen::Vector3d& position, double voxel_m) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;
+  const auto axis = [&](double value) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m))) &
+           kMask;
+  };
+  return axis(position.x()) << 42 | axis(position.y()) << 21 | axis(position.z());
 }
 
 }  // namespace beautymap

@@ -35,8 +35,6 @@ using Mode = tbb::filter;
 namespace beautymap {
 namespace {
 
-// float32 rounds to less than half a millimetre up to here.
-constexpr double kMaxFloat32Coordinate = 8192.0;
 // Points that are shown to the evaluator at once; they fit into the cache.
 constexpr std::size_t kScoredBlock = 1 << 13;
 
@@ -107,7 +105,7 @@ class PointFile {
   }
   /// Whether a point's voxel is still free; it is taken then.
   bool takes(const Eigen::Vector3d& position) {
-    return voxel_m_ <= 0.0 || voxels_.insert(voxelKey(position)).second;
+    return voxel_m_ <= 0.0 || voxels_.insert(voxelKey(position, voxel_m_)).second;
   }
   void close(const pcl::PCLPointCloud2& layout) {
     if (!writer_) writer_ = std::make_unique<PcdStreamWriter>(path_, layout);
@@ -116,15 +114,6 @@ class PointFile {
   const std::string& path() const { return path_; }
 
  private:
-  std::uint64_t voxelKey(const Eigen::Vector3d& position) const {
-    constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
-    const auto axis = [&](double value) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m_))) &
-             kMask;
-    };
-    return axis(position.x()) << 42 | axis(position.y()) << 21 | axis(position.z());
-  }
-
   std::string path_;
   double voxel_m_;
   std::unique_ptr<PcdStreamWriter> writer_;

@@ -15,9 +15,6 @@
 namespace beautymap {
 namespace {
 
-// float32 rounds to less than half a millimetre up to here.
-constexpr double kMaxFloat32Coordinate = 8192.0;
-
 /// Points beyond the radius would bring back the tiles that were put on disk.
 Config withinRadius(Config config) {
   if (config.online.radius > 0.0) {
@@ -280,13 +277,7 @@ void thinRecords(std::vector<std::uint8_t>& records, const pcl::PCLPointCloud2& 
   VoxelSet voxels;
   records.clear();
   for (std::size_t i = 0; i < cloud.width; ++i) {
-    constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
-    const Eigen::Array3d cell = (position(i).array() / voxel_m).floor();
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      key = key << 21 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis])) & kMask);
-    }
-    if (!voxels.insert(key)) continue;
+    if (!voxels.insert(voxelKey(position(i), voxel_m))) continue;
     const std::uint8_t* record = cloud.data.data() + i * layout.point_step;
     records.insert(records.end(), record, record + layout.point_step);
   }

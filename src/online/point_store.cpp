@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/online/point_store.h"
 
-#include <cmath>
-
 #include "beautymap/io/cloud_fields.h"
 
 namespace beautymap {
@@ -70,17 +68,6 @@ std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLP
   return runs;
 }
 
-std::uint64_t PointStore::voxelKey(const PlacedScan& placed, const Eigen::Vector3f& point) const {
-  constexpr std::uint64_t kMask = (std::uint64_t{1} << 21) - 1;  // 21 bits an axis
-  const auto axis = [&](double value) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m_))) &
-           kMask;
-  };
-  return axis(placed.anchor.x * res_g_ + static_cast<double>(point.x())) << 42 |
-         axis(placed.anchor.y * res_g_ + static_cast<double>(point.y())) << 21 |
-         axis(static_cast<double>(point.z()));
-}
-
 std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud_in_map) {
   if (layout_.fields.empty()) layout_ = layoutOf(cloud_in_map);
   const std::vector<CopyRun> runs = recordRuns(cloud_in_map, layout_);
@@ -97,7 +84,10 @@ std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2&
       tile = &tileAt(index);
       last = index;
     }
-    if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(placed, p))) continue;
+    const Eigen::Vector3d position(placed.anchor.x * res_g_ + static_cast<double>(p.x()),
+                                   placed.anchor.y * res_g_ + static_cast<double>(p.y()),
+                                   static_cast<double>(p.z()));
+    if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(position, voxel_m_))) continue;
     const std::size_t at = tile->records.size();
     tile->records.resize(at + layout_.point_step);
     copyRuns(runs,

@@ -47,6 +47,13 @@ class FieldReader {
   std::uint8_t datatype_;
 };
 
+/// Identifies the cube of a voxel grid that a position of the map lies in; 21 bits an axis.
+std::uint64_t voxelKey(const Eigen::Vector3d& position, double voxel_m);
+
+/// float32 rounds coordinates to less than half a millimetre up to here [m]; beyond it a map is
+/// written in float64.
+constexpr double kMaxFloat32Coordinate = 8192.0;
+
 /// A normalized cloud with x, y, z moved by T_map_cloud (computed in double) and every other field
 /// bit-exact. x, y, z become float64 when `as_float64`, float32 otherwise. A cloud whose x, y, z
 /// have that type keeps its layout, and the identity then changes nothing; otherwise the fields

@@ -69,8 +69,6 @@ class PointStore {
   std::size_t memoryBytes() const;
 
  private:
-  std::uint64_t voxelKey(const PlacedScan& placed, const Eigen::Vector3f& point) const;
-
   double res_g_;
   double voxel_m_;
   pcl::PCLPointCloud2 layout_;
