@@ -3,8 +3,10 @@
 #include "beautymap/beam_visibility.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace beautymap {
 namespace {
@@ -73,10 +75,11 @@ class BeamSums {
   void sum(const BeamImage& beams, const ColumnView& view, int first_slope, int last_slope) {
     first_slope_ = first_slope;
     last_slope_ = last_slope;
-    rows_.clear();
-    for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
-      rows_.push_back(beams.row(wrapped(u, beams.azimuthPixels())) + first_slope -
-                      beams.firstSlope());
+    rows_.resize(static_cast<std::size_t>(view.last_azimuth - view.first_azimuth) + 1);
+    int azimuth = wrapped(view.first_azimuth, beams.azimuthPixels());
+    for (const BeamImage::Pixel*& row : rows_) {
+      row = beams.row(azimuth) + first_slope - beams.firstSlope();
+      if (++azimuth == beams.azimuthPixels()) azimuth = 0;
     }
     const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
     all_.resize(size + 2 * kLanes);
@@ -169,45 +172,78 @@ BeamImage::BeamImage(const VisibilityConfig& config)
 float BeamImage::azimuthPixel(float x, float y) const {
   // The diamond angle: 0 to 4 around the circle.
   const float t = y / (std::abs(x) + std::abs(y));
-  const float diamond = x < 0.0F ? 2.0F - t : (t < 0.0F ? 4.0F + t : t);
+  // Chosen constants, not chosen expressions: that is vectorized.
+  const float right = t < 0.0F ? 4.0F : 0.0F;
+  const float turn = x < 0.0F ? 2.0F : right;
+  const float sign = x < 0.0F ? -1.0F : 1.0F;
+  const float diamond = turn + sign * t;
   return diamond * 0.25F * static_cast<float>(azimuth_pixels_);
 }
 
-void BeamImage::fill(const PlacedScan& scan) {
-  incoming_.clear();
-  std::fill(farthest_.begin(), farthest_.end(), 0);
-  first_slope_ = slope_pixels_;
-  last_slope_ = -1;
-  for (const Eigen::Vector3f& point : scan.points) {
-    const Eigen::Vector3f ray = point - scan.sensor;
-    const float distance = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
-    if (distance < kNearestColumn) continue;
-    const int v = floorToInt(slopePixel(std::clamp(ray.z() / distance, -2.0F, 2.0F)));
-    if (v < 0 || v >= slope_pixels_) continue;
-    const int u = std::min(static_cast<int>(azimuthPixel(ray.x(), ray.y())), azimuth_pixels_ - 1);
-    incoming_.push_back({static_cast<std::int16_t>(u), static_cast<std::int16_t>(v),
-                         limitFor(distance) & ~kMaxCount});
-    first_slope_ = std::min(first_slope_, v);
-    last_slope_ = std::max(last_slope_, v);
+void BeamImage::findDirections(const PlacedScan& scan) {
+  for (std::vector<std::int32_t>* values : {&azimuths_, &slopes_, &ends_}) {
+    values->resize(scan.size());
   }
+  first_slope_ = slope_pixels_;
+  last_slope_ = kOutside;
+  const float sx = scan.sensor.x(), sy = scan.sensor.y(), sz = scan.sensor.z();
+  // Rounding may end at the whole circle.
+  const auto last_azimuth = static_cast<float>(azimuth_pixels_ - 1);
+  const auto slope_end = static_cast<float>(slope_pixels_);
+  // Blocks, and short loops without branches: the compiler takes several points at a time.
+  constexpr std::size_t kBlock = 256;
+  std::array<float, kBlock> distance, azimuth, slope;
+  for (std::size_t begin = 0; begin < scan.size(); begin += kBlock) {
+    const std::size_t size = std::min(kBlock, scan.size() - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+      const float x = scan.x[begin + i] - sx, y = scan.y[begin + i] - sy;
+      distance[i] = std::sqrt(x * x + y * y);
+      azimuth[i] = azimuthPixel(x, y);
+      // NaN straight above the sensor.
+      const float pixel = slopePixel((scan.z[begin + i] - sz) / distance[i]);
+      slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      ends_[begin + i] = limitFor(distance[i]) & ~kMaxCount;
+      // The order of the arguments makes NaN the lower limit.
+      azimuths_[begin + i] =
+          static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
+      slopes_[begin + i] = floorToInt(std::max(-1.0F, std::min(slope[i], slope_end)));
+    }
+    for (std::size_t i = begin; i < begin + size; ++i) {
+      if (slopes_[i] >= slope_pixels_) slopes_[i] = kOutside;
+      if (slopes_[i] < 0) continue;
+      first_slope_ = std::min(first_slope_, slopes_[i]);
+      last_slope_ = std::max(last_slope_, slopes_[i]);
+    }
+  }
+}
+
+void BeamImage::fill(const PlacedScan& scan) {
+  findDirections(scan);
   // Most sensors use a small part of the slopes: the image is then small enough for the cache.
-  const auto slopes = static_cast<std::size_t>(std::max(0, last_slope_ - first_slope_ + 1));
-  pixels_.assign(static_cast<std::size_t>(azimuth_pixels_) * slopes + kPadding, kEmpty);
-  for (const Beam& beam : incoming_) {
-    const auto u = static_cast<std::size_t>(beam.azimuth);
-    Pixel& pixel = pixels_[u * slopes + static_cast<std::size_t>(beam.slope - first_slope_)];
-    pixel = std::min(pixel & ~kMaxCount, beam.end) | std::min(countOf(pixel) + 1, kMaxCount);
-    farthest_[u] = std::max(farthest_[u], beam.end | 1);
+  const int slopes = std::max(0, last_slope_ - first_slope_ + 1);
+  const auto azimuths = static_cast<std::size_t>(azimuth_pixels_);
+  pixels_.assign(azimuths * static_cast<std::size_t>(slopes) + kPadding, kEmpty);
+  farthest_.assign(azimuths, 0);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (slopes_[i] == kOutside) continue;
+    const int u = azimuths_[i], v = slopes_[i] - first_slope_;
+    Pixel& pixel = pixels_[static_cast<std::size_t>(u * slopes + v)];
+    pixel = std::min(pixel & ~kMaxCount, ends_[i]) | std::min(countOf(pixel) + 1, kMaxCount);
+    Pixel& farthest = farthest_[static_cast<std::size_t>(u)];
+    farthest = std::max(farthest, ends_[i] | 1);
   }
 }
 
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config) {
+                      const VisibilityConfig& config, BitGrid recycled) {
   const ColumnWindow& window = candidates.window();
   const float res_g = static_cast<float>(matrix.res_g);
   const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
-  BitGrid seen_free(window, 0);
+  BitGrid seen_free = std::move(recycled);
+  seen_free.reset(window, 0);
   BeamSums sums;
   for (int x = 0; x < window.size; ++x) {
     const float dx =

@@ -72,19 +72,19 @@ class BeamImage {
   std::vector<Pixel> pixels_;
   std::vector<Pixel> farthest_;
 
-  /// A beam on its way into the image.
-  struct Beam {
-    std::int16_t azimuth;
-    std::int16_t slope;
-    Pixel end;
-  };
-  std::vector<Beam> incoming_;
+  /// Fills the three arrays below and the range of slopes.
+  void findDirections(const PlacedScan& scan);
+
+  // Of each point of the scan, on its way into the image.
+  static constexpr std::int32_t kOutside = -1;  ///< too near or too steep
+  std::vector<std::int32_t> azimuths_, slopes_, ends_;
 };
 
 /// The candidates that the scan saw free: beams went through the cell's angular footprint, and
 /// nearly all of those in it ended behind the cell.
+/// @param recycled  an earlier result whose memory is used again
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config);
+                      const VisibilityConfig& config, BitGrid recycled = {});
 
 }  // namespace beautymap
