@@ -28,21 +28,59 @@ struct ColumnView {
   int lastSlope(int bit) const { return firstSlope(bit + 1); }
 };
 
-ColumnView viewColumn(const BeamImage& beams, float x, float y, float distance, float bottom,
-                      const MatrixConfig& matrix, float margin) {
-  const float res_g = static_cast<float>(matrix.res_g);
-  const float per_metre = 1.0F / distance;
-  // The directions to the ends of the column's width, seen from the sensor.
-  const float half = 0.5F * res_g * per_metre;
-  const float first = beams.azimuthPixel(x + half * y, y - half * x);
-  float last = beams.azimuthPixel(x - half * y, y + half * x);
-  if (last < first) last += static_cast<float>(beams.azimuthPixels());
-  const float bottom_slope = beams.slopePixel(bottom * per_metre);
-  const float top_slope = beams.slopePixel((bottom + static_cast<float>(matrix.res_h)) * per_metre);
-  return {floorToInt(first), floorToInt(last),
-          BeamImage::limitFor(distance + 0.5F * res_g + margin), bottom_slope,
-          top_slope - bottom_slope};
-}
+/// Some columns of one row of the window. One array per quantity, of a fixed size: the compiler
+/// then views several columns at a time.
+class ColumnViews {
+ public:
+  bool full() const { return size_ == kCapacity; }
+  void clear() { size_ = 0; }
+  /// @param y       index in the row
+  /// @param y_m     of the column's centre, seen from the sensor [m]
+  /// @param bottom  of its bit 0, from the sensor's height [m]
+  void add(int y, float y_m, float bottom) {
+    y_[size_] = y;
+    y_m_[size_] = y_m;
+    bottom_[size_] = bottom;
+    ++size_;
+  }
+  /// @param x_m  of the row, seen from the sensor [m]
+  void view(PixelScale scale, float x_m, const MatrixConfig& matrix) {
+    const auto half_width = 0.5F * static_cast<float>(matrix.res_g);
+    const auto res_h = static_cast<float>(matrix.res_h);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const float y_m = y_m_[i];
+      const float distance = std::sqrt(x_m * x_m + y_m * y_m);
+      const float per_metre = 1.0F / distance;
+      // The directions to the ends of the column's width, seen from the sensor.
+      const float half = half_width * per_metre;
+      first_[i] = scale.azimuthPixel(x_m + half * y_m, y_m - half * x_m);
+      last_[i] = scale.azimuthPixel(x_m - half * y_m, y_m + half * x_m);
+      bottom_slope_[i] = scale.slopePixel(bottom_[i] * per_metre);
+      top_slope_[i] = scale.slopePixel((bottom_[i] + res_h) * per_metre);
+      distance_[i] = distance;
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  int y(std::size_t i) const { return y_[i]; }
+  float distance(std::size_t i) const { return distance_[i]; }
+  /// @param behind_m  what ends so far behind the column's centre has passed it [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m) const {
+    const float turn = last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
+    return {floorToInt(first_[i]), floorToInt(last_[i] + turn),
+            BeamImage::limitFor(distance_[i] + behind_m), bottom_slope_[i],
+            top_slope_[i] - bottom_slope_[i]};
+  }
+
+ private:
+  static constexpr std::size_t kCapacity = 64;
+  template <typename T>
+  using Values = std::array<T, kCapacity>;
+
+  std::size_t size_ = 0;
+  Values<int> y_;
+  Values<float> y_m_, bottom_, distance_, first_, last_, bottom_slope_, top_slope_;
+};
 
 int wrapped(int azimuth, int pixels) {
   return azimuth < 0 ? azimuth + pixels : azimuth >= pixels ? azimuth - pixels : azimuth;
@@ -82,8 +120,9 @@ class BeamSums {
       if (++azimuth == beams.azimuthPixels()) azimuth = 0;
     }
     const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
-    all_.resize(size + 2 * kLanes);
-    passed_.resize(size + 2 * kLanes);
+    // up_to[v] counts the slopes below v.
+    all_up_to_.resize(size + 2 * kLanes + 1);
+    passed_up_to_.resize(size + 2 * kLanes + 1);
     const BeamImage::Pixel limit = view.behind;
     const Lanes behind = {limit, limit, limit, limit};
     for (std::size_t v = 0; v < size; v += 2 * kLanes) {
@@ -92,20 +131,26 @@ class BeamSums {
         add(row + v, behind, all_low, passed_low);
         add(row + v + kLanes, behind, all_high, passed_high);
       }
-      store(all_low, &all_[v]);
-      store(all_high, &all_[v + kLanes]);
-      store(passed_low, &passed_[v]);
-      store(passed_high, &passed_[v + kLanes]);
+      store(all_low, &all_up_to_[v + 1]);
+      store(all_high, &all_up_to_[v + 1 + kLanes]);
+      store(passed_low, &passed_up_to_[v + 1]);
+      store(passed_high, &passed_up_to_[v + 1 + kLanes]);
+    }
+    std::int32_t all = 0, passed = 0;
+    all_up_to_[0] = passed_up_to_[0] = 0;
+    for (std::size_t v = 1; v <= size; ++v) {
+      all_up_to_[v] = all += all_up_to_[v];
+      passed_up_to_[v] = passed += passed_up_to_[v];
     }
   }
 
   bool seesFree(int first_slope, int last_slope, const VisibilityConfig& config) const {
-    int all = 0, passed = 0;
-    const int end = std::min(last_slope, last_slope_) - first_slope_;
-    for (int v = std::max(first_slope, first_slope_) - first_slope_; v <= end; ++v) {
-      all += all_[static_cast<std::size_t>(v)];
-      passed += passed_[static_cast<std::size_t>(v)];
-    }
+    const int begin = std::max(first_slope, first_slope_) - first_slope_;
+    const int end = std::min(last_slope, last_slope_) - first_slope_ + 1;
+    if (begin >= end) return false;
+    const auto from = static_cast<std::size_t>(begin), to = static_cast<std::size_t>(end);
+    const int all = all_up_to_[to] - all_up_to_[from];
+    const int passed = passed_up_to_[to] - passed_up_to_[from];
     return passed >= config.min_beams && passed >= config.min_share * all;
   }
 
@@ -129,8 +174,7 @@ class BeamSums {
   int first_slope_ = 0;
   int last_slope_ = -1;
   std::vector<const BeamImage::Pixel*> rows_;
-  std::vector<BeamImage::Pixel> all_;
-  std::vector<BeamImage::Pixel> passed_;
+  std::vector<BeamImage::Pixel> all_up_to_, passed_up_to_;
 };
 
 Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
@@ -162,22 +206,12 @@ BeamImage::BeamImage(const VisibilityConfig& config)
   // Four pixels of azimuth are as many as the diamond angle's range, so that all quadrants are
   // alike.
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
-  slope_scale_ = static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0));
-  slope_pixels_ = static_cast<int>((kMaxSlope - kMinSlope) * slope_scale_) + 1;
+  scale_ = {static_cast<float>(azimuth_pixels_),
+            static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0))};
+  slope_pixels_ = static_cast<int>(scale_.slopePixel(PixelScale::kMaxSlope)) + 1;
   farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
   first_slope_ = slope_pixels_;
   last_slope_ = -1;
-}
-
-float BeamImage::azimuthPixel(float x, float y) const {
-  // The diamond angle: 0 to 4 around the circle.
-  const float t = y / (std::abs(x) + std::abs(y));
-  // Chosen constants, not chosen expressions: that is vectorized.
-  const float right = t < 0.0F ? 4.0F : 0.0F;
-  const float turn = x < 0.0F ? 2.0F : right;
-  const float sign = x < 0.0F ? -1.0F : 1.0F;
-  const float diamond = turn + sign * t;
-  return diamond * 0.25F * static_cast<float>(azimuth_pixels_);
 }
 
 void BeamImage::findDirections(const PlacedScan& scan) {
@@ -186,6 +220,7 @@ void BeamImage::findDirections(const PlacedScan& scan) {
   }
   first_slope_ = slope_pixels_;
   last_slope_ = kOutside;
+  const PixelScale scale = scale_;
   const float sx = scan.sensor.x(), sy = scan.sensor.y(), sz = scan.sensor.z();
   // Rounding may end at the whole circle.
   const auto last_azimuth = static_cast<float>(azimuth_pixels_ - 1);
@@ -198,9 +233,9 @@ void BeamImage::findDirections(const PlacedScan& scan) {
     for (std::size_t i = 0; i < size; ++i) {
       const float x = scan.x[begin + i] - sx, y = scan.y[begin + i] - sy;
       distance[i] = std::sqrt(x * x + y * y);
-      azimuth[i] = azimuthPixel(x, y);
+      azimuth[i] = scale.azimuthPixel(x, y);
       // NaN straight above the sensor.
-      const float pixel = slopePixel((scan.z[begin + i] - sz) / distance[i]);
+      const float pixel = scale.slopePixel((scan.z[begin + i] - sz) / distance[i]);
       slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
     }
     for (std::size_t i = 0; i < size; ++i) {
@@ -244,22 +279,33 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
   const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
   BitGrid seen_free = std::move(recycled);
   seen_free.reset(window, 0);
+  const float margin = 0.5F * res_g + static_cast<float>(config.margin);
+  ColumnViews views;
   BeamSums sums;
+  const auto from_sensor = [&](int column, float sensor) {
+    return (static_cast<float>(column) + 0.5F) * res_g - sensor;
+  };
+  const auto judge = [&](int x) {
+    views.view(beams.scale(), from_sensor(window.corner.x - scan.anchor.x + x, scan.sensor.x()),
+               matrix);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const float distance = views.distance(i);
+      if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
+      const ColumnView view = views.at(i, beams, margin);
+      const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
+      if (judged == 0 || !anyBeamPassed(beams, view)) continue;
+      seen_free.at(x, views.y(i)) = seenFree(judged, beams, view, config, sums);
+    }
+    views.clear();
+  };
   for (int x = 0; x < window.size; ++x) {
-    const float dx =
-        (static_cast<float>(window.corner.x - scan.anchor.x + x) + 0.5F) * res_g - scan.sensor.x();
     for (int y = 0; y < window.size; ++y) {
       if (candidates.at(x, y) == 0) continue;
-      const float dy = (static_cast<float>(window.corner.y - scan.anchor.y + y) + 0.5F) * res_g -
-                       scan.sensor.y();
-      const float distance = std::sqrt(dx * dx + dy * dy);
-      if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const ColumnView view = viewColumn(beams, dx, dy, distance, ground.at(x, y) - scan.sensor.z(),
-                                         matrix, static_cast<float>(config.margin));
-      const Bits judged = inImage(candidates.at(x, y), beams, view);
-      if (judged == 0 || !anyBeamPassed(beams, view)) continue;
-      seen_free.at(x, y) = seenFree(judged, beams, view, config, sums);
+      views.add(y, from_sensor(window.corner.y - scan.anchor.y + y, scan.sensor.y()),
+                ground.at(x, y) - scan.sensor.z());
+      if (views.full()) judge(x);
     }
+    judge(x);
   }
   return seen_free;
 }
