@@ -154,7 +154,7 @@ void beam_visibility(State& state) {
   });
 }
 
-// The passes: a whole scan is all of them; encode only where the configuration needs it.
+// The passes: a whole scan is all of them; only the published method needs encode.
 template <const char* kConfig>
 void observe(State& state) {
   run(state, kConfig, [](Prepared& p) { p.cleaner.observe(p.scan); });
@@ -218,7 +218,6 @@ BENCHMARK_TEMPLATE(whole_scan, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(coarse_ground_of_map, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(judgement_of_map, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(observe, kDefault)->Apply(beamsAndCells);
-BENCHMARK_TEMPLATE(encode, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(compare, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(extraction, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(whole_scan, kDefault)->Apply(beamsAndCells);

@@ -13,7 +13,8 @@ COLUMNS_PER_TILE = 32 * 32
 
 
 def stage_times(path):
-    """-> {stage: {(beams, res_g in cm): {'ms', 'to_floor'}}}, and the benchmarks without these two."""
+    """-> {stage: {(beams, res_g in cm): {'ms', 'to_floor'}}}, and {name: {'ms', 'map_mb'}} of the
+    benchmarks without these two."""
     stages, others = {}, {}
     for result in json.loads(path.read_text())["benchmarks"]:
         name, *arguments = result["name"].split("/")
@@ -23,7 +24,12 @@ def stage_times(path):
             key = (int(values["beams"]), int(values["res_g_cm"]))
             stages.setdefault(name, {})[key] = {"ms": result["cpu_time"]}
         else:
-            others[result["name"]] = result["cpu_time"]
+            # Of a road the counters tell more: a scan's share of the time, and the map's memory.
+            whole_s = result.get("s_per_scan")
+            others[name + "".join(f", {argument}" for argument in arguments)] = {
+                "ms": result["cpu_time"] if whole_s is None else 1000 * whole_s,
+                "map_mb": result.get("map_MB"),
+            }
     for times in stages.values():
         for key, time in times.items():
             time["to_floor"] = time["ms"] / stages["floor"][key]["ms"]
@@ -92,15 +98,19 @@ def main():
     runs = whole_runs(folder)
     print()
     print_stages(stages)
-    print("A whole scan on new ground, and in maps of 1, 10 and 100 areas\n")
-    print_table(["", "ms"], [[name, f"{ms:.3f}"] for name, ms in others.items()])
+    print("A scan seen first on new ground; a whole scan in maps of 1, 10 and 100 areas; and along a "
+          "road\n")
+    print_table(["", "ms", "map [MB]"], [
+        [name.replace(", iterations:1", ""), f"{other['ms']:.3f}",
+         "" if other["map_mb"] is None else f"{other['map_mb']:.0f}"]
+        for name, other in others.items()])
     print_runs(runs)
     results = {
         "stages": [
             {"stage": name, "beams": key[0], "res_g_m": key[1] / 100, **time}
             for name, times in stages.items() for key, time in times.items()
         ],
-        "maps_ms": others,
+        "maps": others,
         "runs": runs,
     }
     (folder / "results.json").write_text(json.dumps(results, indent=1) + "\n")
