@@ -38,7 +38,7 @@ void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& conf
   move(tile.leaning[column]);
   move(tile.unknown[column]);
   move(tile.dynamic[column]);
-  if (!tile.evidence.empty()) tile.evidence[column].shift(bits, mask);
+  if (tile.evidence.has(column)) tile.evidence.touch(column).shift(bits, mask);
   const bool layer = config.ground_layer.enabled;
   // Without a ground layer the bins divide one cell: they belong to another one now.
   const long bins = layer       ? std::lround(up / config.ground_layer.bin_height)
@@ -53,7 +53,7 @@ bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift
   const float old = tile.ground[column];
   if (old == bottom) return false;
   const bool holds_nothing =
-      old == Tile::kNoHeight || (tile.occupied[column] == 0 && tile.evidence.empty());
+      old == Tile::kNoHeight || (tile.occupied[column] == 0 && !tile.evidence.has(column));
   if (holds_nothing) tile.ground[column] = bottom;
   if (holds_nothing || std::abs(old - bottom) <= max_drift) return false;
   moveBottom(tile, column, bottom, config);

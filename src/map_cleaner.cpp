@@ -170,9 +170,8 @@ void MapCleaner::addEvidence(const ScanView& view) {
     const Bits hit = view.hit.at(x, y);
     const Bits free = view.free.at(x, y);
     if ((hit | free) == 0) return;
-    if (tile.evidence.empty()) tile.evidence.resize(Tile::kColumns);
     tile.occupied[column] |= hit;
-    tile.evidence[column].observe(hit, free);
+    tile.evidence.touch(column).observe(hit, free);
   });
   clock.lap("evidence");
 }

@@ -24,7 +24,8 @@ int MapJudgement::fineBins() const {
 void MapJudgement::judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
   for (const ColumnIndex index : tiles) {
     Tile& tile = *map.findTile(index);
-    for (std::size_t column = 0; column < tile.evidence.size(); ++column) {
+    if (tile.evidence.empty()) continue;
+    for (std::size_t column = 0; column < Tile::kColumns; ++column) {
       judgeEvidence(tile, column, ~Bits{0});
     }
   }

@@ -165,8 +165,7 @@ void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
   forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits observed = cells.at(x, y);
     if (observed == 0) return;
-    if (tile.evidence.empty()) tile.evidence.resize(Tile::kColumns);
-    tile.evidence[column].observe(hit ? observed : 0, hit ? 0 : observed);
+    tile.evidence.touch(column).observe(hit ? observed : 0, hit ? 0 : observed);
     if ((observed & tile.occupied[column]) == 0) return;
     const auto judged = [&] {
       return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],

@@ -26,7 +26,7 @@ std::size_t TileMap::memoryBytes() const {
       sizeof(std::uint32_t) * Tile::kColumns * static_cast<std::size_t>(fine_bins_);
   std::size_t evidence = 0;
   for (const auto& tile : tiles_) {
-    evidence += tile.second->evidence.size() * sizeof(ColumnEvidence);
+    evidence += tile.second->evidence.memoryBytes();
   }
   return tiles_.size() * (sizeof(Tile) + fine) + evidence;
 }

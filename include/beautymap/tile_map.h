@@ -16,6 +16,7 @@
 #include "beautymap/binary_encoding.h"
 #include "beautymap/column_grid.h"
 #include "beautymap/evidence.h"
+#include "beautymap/sparse_columns.h"
 
 namespace beautymap {
 
@@ -45,9 +46,9 @@ struct Tile {
   std::array<Bits, kColumns> unknown{};  ///< cells never seen free and seldom hit
   std::array<Bits, kColumns> dynamic{};  ///< cells that are removed
   std::array<std::uint16_t, kColumns>
-      static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
-  std::vector<ColumnEvidence> evidence;    ///< empty until a scan is compared
-  std::vector<std::uint32_t> fine_counts;  ///< points per fine bin of the ground cell
+      static_bins{};  ///< fine bins of the ground cell that stay; 0: all
+  SparseColumns<ColumnEvidence, kColumns> evidence;  ///< of columns that were observed
+  std::vector<std::uint32_t> fine_counts;            ///< points per fine bin of the ground cell
 
   // Of maps that grow (OnlineMap).
   std::bitset<kColumns> stale_ground;  ///< columns whose ground must be estimated again

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <type_traits>
+#include <utility>
 
 #include "beautymap/io/scan_source.h"
 #include "beautymap/map_judgement.h"
@@ -14,7 +15,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 1\n";
+constexpr char kMagic[] = "beautymap tiles 2\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -101,7 +102,8 @@ void TileFileWriter::append(ColumnIndex index, const Tile& tile, const TilePoint
   write(&kTile, sizeof(kTile));
   write(&index, sizeof(index));
   forEachArray(tile, [&](const void* data, std::size_t size) { write(data, size); });
-  writeVector(tile.evidence);
+  writeVector(tile.evidence.places());
+  writeVector(tile.evidence.values());
   writeVector(points.records);
   writeVector(points.column);
   writeVector(points.z);
@@ -187,14 +189,17 @@ bool TileFileReader::next(ColumnIndex& index, Tile& tile, TilePoints& points) {
   if (kind != kTile) throw InputError("'" + path_ + "' is damaged");
   read(&index, sizeof(index));
   forEachArray(tile, [&](void* data, std::size_t size) { read(data, size); });
-  readVector(tile.evidence);
+  std::vector<std::uint16_t> places;
+  std::vector<ColumnEvidence> evidence;
+  readVector(places);
+  readVector(evidence);
   readVector(points.records);
   readVector(points.column);
   readVector(points.z);
   std::vector<std::uint64_t> keys;
   readVector(keys);
   for (const std::uint64_t key : keys) points.voxels.insert(key);
-  const bool consistent = (tile.evidence.empty() || tile.evidence.size() == Tile::kColumns) &&
+  const bool consistent = tile.evidence.assign(std::move(places), std::move(evidence)) &&
                           points.z.size() == points.size() &&
                           points.records.size() == points.size() * header_.layout.point_step &&
                           std::all_of(points.column.begin(), points.column.end(),

@@ -24,12 +24,12 @@ Config dyadicConfig() {
 /// A tile with random cells, evidence and counts in one column, anchored at 0.
 Tile randomColumn(test::Random& random, const Config& config) {
   Tile tile(GroundLayer(config.ground_layer, config.matrix.res_h).bins());
-  tile.evidence.resize(Tile::kColumns);
   tile.ground[kColumn] = 0.0F;
   tile.occupied[kColumn] = random.bits() & lowBits(config.matrix.n_bit);
   for (int i = 0; i < 20; ++i) {
     const Bits mask = lowBits(config.matrix.n_bit);
-    tile.evidence[kColumn].observe(random.bits() & random.bits() & mask, random.bits() & mask);
+    tile.evidence.touch(kColumn).observe(random.bits() & random.bits() & mask,
+                                         random.bits() & mask);
   }
   for (std::uint32_t& count : tile.fine_counts) count = static_cast<std::uint32_t>(random.bits());
   return tile;

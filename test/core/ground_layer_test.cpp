@@ -270,12 +270,11 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   }
   constexpr int kGroundBit = 8;
   map.forEachTile([&](ColumnIndex, Tile& tile) {
-    tile.evidence.resize(Tile::kColumns);
     for (std::size_t i = 0; i < tile.dynamic.size(); ++i) {
       tile.dynamic[i] = Bits{1} << (kGroundBit + random.integer(1, 2));
-      tile.evidence[i].observe(Bits{1} << kGroundBit, 0);
+      tile.evidence.touch(i).observe(Bits{1} << kGroundBit, 0);
       for (int free = random.integer(0, 3); free > 0; --free) {
-        tile.evidence[i].observe(0, Bits{1} << kGroundBit);
+        tile.evidence.touch(i).observe(0, Bits{1} << kGroundBit);
       }
     }
     findGroundLayers(tile, layer, kGroundBit, EvidenceConfig());

@@ -12,14 +12,13 @@ namespace {
 /// Random cells with random evidence in some columns, mostly of one height so that they support
 /// each other.
 void changeTile(Tile& tile, test::Random& random) {
-  tile.evidence.resize(Tile::kColumns);
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
     if (random.chance(0.3)) continue;
     const Bits cells = Bits{0x1f} << random.integer(8, 10);
     tile.occupied[column] |= cells;
-    for (int i = random.integer(0, 3); i > 0; --i) tile.evidence[column].observe(cells, 0);
+    for (int i = random.integer(0, 3); i > 0; --i) tile.evidence.touch(column).observe(cells, 0);
     const Bits free = random.chance(0.5) ? cells : random.bits();
-    for (int i = random.integer(0, 6); i > 0; --i) tile.evidence[column].observe(0, free);
+    for (int i = random.integer(0, 6); i > 0; --i) tile.evidence.touch(column).observe(0, free);
   }
   for (std::uint32_t& count : tile.fine_counts) count += random.chance(0.5) ? 1 : 0;
 }
