@@ -17,6 +17,14 @@ namespace {
 // Lowest heights fall by millimetres in every scan: not a reason to estimate the ground again.
 constexpr float kNoticeable = 0.02F;  // [m]
 
+/// Whether any of these cells was seen free so often before its first hit, no more and no less.
+bool anySeenFree(const ColumnEvidence& evidence, Bits cells, int times) {
+  for (; cells != 0; cells &= cells - 1) {
+    if (evidence.freeBefore(lowestBitIndex(cells)) == times) return true;
+  }
+  return false;
+}
+
 const Config& checked(const Config& config) {
   checkConfig(config);
   if (!config.evidence.enabled) {
@@ -62,7 +70,6 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
 }
 
 void OnlineMap::addLowest() {
-  lowered_.clear();
   TileCursor<TileMap> tile_of(map_);
   forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
     const ColumnIndex column{placed_.anchor.x + x, placed_.anchor.y + y};
@@ -88,6 +95,7 @@ void OnlineMap::updateGround() {
       }
     }
   }
+  lowered_.clear();
   for (const ColumnIndex index : stale) estimateStaleGround(index, *map_.findTile(index));
 }
 
@@ -100,12 +108,20 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
   const float below = static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
   const auto anchor = [&](std::size_t column, float ground) {
     if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {
+      // Another cell is the ground's now, and what was taken for ground may be an object.
+      if (!tile.evidence.empty()) judgement_.judgeEvidence(tile, column, ~Bits{0});
       tile.unsettled = true;
       ++tile.revision;
     }
   };
+  std::bitset<Tile::kColumns> has_ground;
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
-    if (!tile.stale_ground[column] || tile.lowest[column] == Tile::kNoHeight) continue;
+    if (tile.lowest[column] == Tile::kNoHeight ||
+        hangsOverFreeSpace(tile, column, tile.lowest[column], config_)) {
+      continue;
+    }
+    has_ground.set(column);
+    if (!tile.stale_ground[column]) continue;
     const int x = static_cast<int>(column) >> Tile::kShift;
     const int y = static_cast<int>(column) & (Tile::kSide - 1);
     const float ground = coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height;
@@ -114,10 +130,14 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     anchor(column, std::min(ground, tile.lowest[column] + below));
   }
   tile.stale_ground.reset();
-  const auto empty = groundOfEmptyColumns(tile);
+  const auto others = groundOfOtherColumns(tile, has_ground);
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    // A column that holds points moves down only, so that they stay in cells.
+    const bool lifts =
+        tile.lowest[column] != Tile::kNoHeight && others[column] >= tile.ground[column];
+    if (others[column] == Tile::kNoHeight || lifts) continue;
     // The nearest column's bottom, which lies below its ground already.
-    if (empty[column] != Tile::kNoHeight) anchor(column, empty[column] + below);
+    anchor(column, others[column] + below);
   }
 }
 
@@ -162,11 +182,18 @@ void OnlineMap::addSeenFree() {
 }
 
 void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
+  const Bits far_below = lowBits(config_.matrix.bits_below - 1);
   forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits observed = cells.at(x, y);
     if (observed == 0) return;
     if (tile.evidence.empty()) tile.evidence.resize(Tile::kColumns);
     tile.evidence[column].observe(hit ? observed : 0, hit ? 0 : observed);
+    // Free space far below a column's ground says that it is none.
+    if (!hit && tile.lowest[column] != Tile::kNoHeight &&
+        anySeenFree(tile.evidence[column], observed & far_below,
+                    config_.evidence.min_free_in_order)) {
+      lowered_.push_back({cells.window().corner.x + x, cells.window().corner.y + y});
+    }
     if ((observed & tile.occupied[column]) == 0) return;
     const auto judged = [&] {
       return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],

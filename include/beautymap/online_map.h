@@ -78,8 +78,9 @@ class OnlineMap {
   PlacedScan placed_;  ///< the last scan
   BitGrid hits_;       ///< its matrix
   std::vector<PointClass> classes_;
-  std::vector<float> neighbours_;     ///< of one column
-  std::vector<ColumnIndex> lowered_;  ///< columns whose lowest height this scan changed
+  std::vector<float> neighbours_;  ///< of one column
+  /// Columns whose lowest height fell, or whose ground was seen to be none.
+  std::vector<ColumnIndex> lowered_;
 };
 
 }  // namespace beautymap
