@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "beautymap/io/cloud_fields.h"
@@ -76,12 +77,15 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
 }
 
 void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
-  const pcl::PCLPointCloud2 in_map = moveCloud(scan.cloud, scan.T_map_cloud, float64_);
   ++scans_waiting_;
   const std::lock_guard<std::mutex> lock(mutex_);
   --scans_waiting_;
-  points_.add(map_.placed(), in_map);
+  // The points and the matrix have nothing in common: two threads share the time.
+  auto stored = std::async(std::launch::async, [&] {
+    points_.add(map_.placed(), scan.cloud, scan.T_map_cloud, float64_);
+  });
   if (see_free) map_.addSeenFree();
+  stored.get();
   map_.settle();
   storeFar(scan.T_map_sensor.translation());
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/online/point_store.h"
 
+#include <algorithm>
+
 #include "beautymap/io/cloud_fields.h"
 
 namespace beautymap {
@@ -68,37 +70,57 @@ std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLP
   return runs;
 }
 
-std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud_in_map) {
-  if (layout_.fields.empty()) layout_ = layoutOf(cloud_in_map);
-  const std::vector<CopyRun> runs = recordRuns(cloud_in_map, layout_);
+std::vector<PointStore::NewPoint> PointStore::newPoints(const PlacedScan& placed) {
   const float columns_per_metre = static_cast<float>(1.0 / res_g_);
-  const std::size_t before = size_;
+  const Eigen::Vector3d origin(placed.anchor.x * res_g_, placed.anchor.y * res_g_, 0.0);
+  std::vector<NewPoint> found;
   ColumnIndex last{};
+  std::uint64_t last_key = 0;
   TilePoints* tile = nullptr;
   for (std::size_t i = 0; i < placed.points.size(); ++i) {
     const Eigen::Vector3f& p = placed.points[i];
     const ColumnIndex column{placed.anchor.x + floorToInt(p.x() * columns_per_metre),
                              placed.anchor.y + floorToInt(p.y() * columns_per_metre)};
     const ColumnIndex index = TileMap::tileOf(column);
-    if (tile == nullptr || index != last) {
-      tile = &tileAt(index);
-      last = index;
+    const bool same_tile = tile != nullptr && index == last;
+    if (!same_tile) tile = &tileAt(index);
+    last = index;
+    if (voxel_m_ > 0.0) {
+      const std::uint64_t key = voxelKey(origin + p.cast<double>(), voxel_m_);
+      // Neighbouring beams often end in the same voxel.
+      if ((same_tile && key == last_key) || !tile->voxels.insert(key)) continue;
+      last_key = key;
     }
-    const Eigen::Vector3d position(placed.anchor.x * res_g_ + static_cast<double>(p.x()),
-                                   placed.anchor.y * res_g_ + static_cast<double>(p.y()),
-                                   static_cast<double>(p.z()));
-    if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(position, voxel_m_))) continue;
-    const std::size_t at = tile->records.size();
-    tile->records.resize(at + layout_.point_step);
-    copyRuns(runs,
-             cloud_in_map.data.data() +
-                 static_cast<std::size_t>(placed.source_index[i]) * cloud_in_map.point_step,
-             tile->records.data() + at);
-    tile->column.push_back(static_cast<std::uint16_t>(TileMap::indexInTile(column)));
-    tile->z.push_back(p.z());
-    ++size_;
+    found.push_back({tile, placed.source_index[i],
+                     static_cast<std::uint16_t>(TileMap::indexInTile(column)), p.z()});
   }
-  return size_ - before;
+  return found;
+}
+
+std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud,
+                            const Eigen::Isometry3d& T_map_cloud, bool as_float64) {
+  const std::vector<NewPoint> added = newPoints(placed);
+  // Only these are moved: in a map with voxels they are few.
+  pcl::PCLPointCloud2 chosen = layoutOf(cloud);
+  chosen.width = static_cast<std::uint32_t>(added.size());
+  chosen.data.resize(added.size() * cloud.point_step);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const auto* record = cloud.data.data() + std::size_t{added[i].source} * cloud.point_step;
+    std::copy(record, record + cloud.point_step, chosen.data.data() + i * cloud.point_step);
+  }
+  const pcl::PCLPointCloud2 in_map = moveCloud(chosen, T_map_cloud, as_float64);
+  if (layout_.fields.empty()) layout_ = layoutOf(in_map);
+  const std::vector<CopyRun> runs = recordRuns(in_map, layout_);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    TilePoints& tile = *added[i].tile;
+    const std::size_t at = tile.records.size();
+    tile.records.resize(at + layout_.point_step);
+    copyRuns(runs, in_map.data.data() + i * in_map.point_step, tile.records.data() + at);
+    tile.column.push_back(added[i].column);
+    tile.z.push_back(added[i].z);
+  }
+  size_ += added.size();
+  return added.size();
 }
 
 const TilePoints* PointStore::findTile(ColumnIndex tile) const {
