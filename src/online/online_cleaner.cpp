@@ -34,6 +34,11 @@ class OnlineCleaner::ReaderLock {
     while (cleaner.scans_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
     lock_.lock();
   }
+  /// What the last scan saw free is judged with the next scan, unless somebody asks before.
+  void settle(const OnlineCleaner& cleaner) const {
+    if (!cleaner.settled_) cleaner.map_.settle();
+    cleaner.settled_ = true;
+  }
 
  private:
   std::unique_lock<std::mutex> lock_;
@@ -73,6 +78,7 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
   if (scan.sensor_in_map.allFinite()) fetchNear(scan.sensor_in_map);
   const auto& classes = map_.addHits(scan);
   started_ = true;
+  settled_ = true;
   return classes;
 }
 
@@ -85,8 +91,8 @@ void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
     points_.add(map_.placed(), scan.cloud, scan.T_map_cloud, float64_);
   });
   if (see_free) map_.addSeenFree();
+  settled_ = false;
   stored.get();
-  map_.settle();
   storeFar(scan.T_map_sensor.translation());
 }
 
@@ -136,6 +142,7 @@ void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
     // Farther than what fetchNear() brings back, so that a standing sensor moves no tile.
     if (distance(index, sensor) > radius + 2.0 * side) far.push_back(index);
   });
+  if (!far.empty()) map_.settle();
   for (const ColumnIndex index : far) {
     const TilePoints& points = points_.tileAt(index);
     TileFileWriter writer(fileOf(index), header(""), config());
@@ -162,7 +169,8 @@ std::vector<ColumnIndex> OnlineCleaner::tiles() const {
 
 bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
   const ReaderLock lock(*this);
-  const Tile* tile = map_.map().findTile(index);
+  lock.settle(*this);
+  const Tile* tile = std::as_const(map_).map().findTile(index);
   const TilePoints* points = points_.findTile(index);
   Tile stored(0);
   TilePoints stored_points;
@@ -196,6 +204,7 @@ pcl::PCLPointCloud2 OnlineCleaner::layout() const {
 
 std::pair<BitGrid, BitGrid> OnlineCleaner::bitsAround(double half_side_m) const {
   const ReaderLock lock(*this);
+  lock.settle(*this);
   const int half = std::max(1, static_cast<int>(half_side_m / config().matrix.res_g));
   const ColumnIndex centre = map_.placed().anchor;
   const ColumnWindow window{{centre.x - half, centre.y - half}, 2 * half + 1};

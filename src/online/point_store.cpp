@@ -10,8 +10,7 @@ namespace beautymap {
 
 bool VoxelSet::place(std::uint64_t slot) {
   const std::size_t mask = slots_.size() - 1;
-  // Fibonacci hashing: neighbouring voxels must not fill neighbouring slots.
-  std::size_t at = static_cast<std::size_t>(slot * 0x9E3779B97F4A7C15ULL >> 20) & mask;
+  std::size_t at = home(slot);
   while (slots_[at] != 0) {
     if (slots_[at] == slot) return false;
     at = (at + 1) & mask;
@@ -73,28 +72,37 @@ std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLP
 std::vector<PointStore::NewPoint> PointStore::newPoints(const PlacedScan& placed) {
   const float columns_per_metre = static_cast<float>(1.0 / res_g_);
   const Eigen::Vector3d origin(placed.anchor.x * res_g_, placed.anchor.y * res_g_, 0.0);
-  std::vector<NewPoint> found;
+  std::vector<NewPoint> points;
+  points.reserve(placed.points.size());
   ColumnIndex last{};
-  std::uint64_t last_key = 0;
   TilePoints* tile = nullptr;
   for (std::size_t i = 0; i < placed.points.size(); ++i) {
     const Eigen::Vector3f& p = placed.points[i];
     const ColumnIndex column{placed.anchor.x + floorToInt(p.x() * columns_per_metre),
                              placed.anchor.y + floorToInt(p.y() * columns_per_metre)};
     const ColumnIndex index = TileMap::tileOf(column);
-    const bool same_tile = tile != nullptr && index == last;
-    if (!same_tile) tile = &tileAt(index);
+    if (tile == nullptr || index != last) tile = &tileAt(index);
     last = index;
+    std::uint64_t voxel = 0;
     if (voxel_m_ > 0.0) {
-      const std::uint64_t key = voxelKey(origin + p.cast<double>(), voxel_m_);
+      voxel = voxelKey(origin + p.cast<double>(), voxel_m_);
       // Neighbouring beams often end in the same voxel.
-      if ((same_tile && key == last_key) || !tile->voxels.insert(key)) continue;
-      last_key = key;
+      if (!points.empty() && points.back().tile == tile && points.back().voxel == voxel) continue;
     }
-    found.push_back({tile, placed.source_index[i],
-                     static_cast<std::uint16_t>(TileMap::indexInTile(column)), p.z()});
+    points.push_back({tile, voxel, placed.source_index[i],
+                      static_cast<std::uint16_t>(TileMap::indexInTile(column)), p.z()});
   }
-  return found;
+  if (voxel_m_ == 0.0) return points;
+  constexpr std::size_t kAhead = 16;  // points
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i + kAhead < points.size()) {
+      points[i + kAhead].tile->voxels.prefetch(points[i + kAhead].voxel);
+    }
+    if (points[i].tile->voxels.insert(points[i].voxel)) points[found++] = points[i];
+  }
+  points.resize(found);
+  return points;
 }
 
 std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud,

@@ -22,6 +22,10 @@ class VoxelSet {
  public:
   /// @return false when it was there already
   bool insert(std::uint64_t key);
+  /// Fetches from memory what insert(key) will look at: most of its time is waiting for that.
+  void prefetch(std::uint64_t key) const {
+    if (!slots_.empty()) __builtin_prefetch(&slots_[home(key + 1)]);
+  }
   std::size_t size() const { return size_; }
   std::size_t memoryBytes() const { return slots_.size() * sizeof(std::uint64_t); }
   /// All keys, in no particular order.
@@ -29,6 +33,11 @@ class VoxelSet {
 
  private:
   bool place(std::uint64_t slot);
+  /// Where a slot's search begins. Fibonacci hashing: neighbouring voxels must not fill
+  /// neighbouring slots.
+  std::size_t home(std::uint64_t slot) const {
+    return static_cast<std::size_t>(slot * 0x9E3779B97F4A7C15ULL >> 20) & (slots_.size() - 1);
+  }
 
   std::vector<std::uint64_t> slots_;  ///< key + 1; 0: empty
   std::size_t size_ = 0;
@@ -74,6 +83,7 @@ class PointStore {
  private:
   struct NewPoint {
     TilePoints* tile;
+    std::uint64_t voxel;   ///< its key
     std::uint32_t source;  ///< index in the scan's cloud
     std::uint16_t column;
     float z;
