@@ -3,6 +3,7 @@
 #include "beautymap/online_map.h"
 
 #include <algorithm>
+#include <future>
 #include <tuple>
 #include <utility>
 
@@ -174,11 +175,28 @@ void OnlineMap::addSeenFree() {
                   candidates.at(x, y) = (tile.occupied[column] | remembered) & ~hits_.at(x, y);
                 });
   clock.lap("matrix_comparison");
-  const BitGrid seen_free =
-      cellsSeenFree(beams_, candidates, ground, placed_, config_.matrix, config_.visibility);
+  const BitGrid seen_free = lookThroughHalves(candidates, ground);
   clock.lap("beam_visibility");
   addEvidence(seen_free, false);
   clock.lap("evidence");
+}
+
+BitGrid OnlineMap::lookThroughHalves(const BitGrid& candidates, const HeightGrid& ground) const {
+  const int middle = candidates.size() / 2;
+  const auto look = [&](int begin, int end) {
+    BitGrid half(candidates.window(), 0);
+    for (int x = begin; x < end; ++x) {
+      for (int y = 0; y < half.size(); ++y) half.at(x, y) = candidates.at(x, y);
+    }
+    return cellsSeenFree(beams_, half, ground, placed_, config_.matrix, config_.visibility);
+  };
+  auto other = std::async(std::launch::async, look, 0, middle);
+  BitGrid seen_free = look(middle, candidates.size());
+  const BitGrid rest = other.get();
+  for (int x = 0; x < middle; ++x) {
+    for (int y = 0; y < rest.size(); ++y) seen_free.at(x, y) = rest.at(x, y);
+  }
+  return seen_free;
 }
 
 void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
