@@ -210,7 +210,7 @@ struct OnlineConfig {
   double radius = 0.0;
   double free_height = 12.0;
   double ground_drift = 0.1;
-  double live_share = 0.2;
+  double live_share = 0.25;
   int live_rounds = 16;
 
   template <typename Visitor>
