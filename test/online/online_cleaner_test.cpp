@@ -163,7 +163,7 @@ TEST(OnlineCleaner, SessionsThatCannotBeContinuedAreRefused) {
   EXPECT_THROW(OnlineCleaner(Config(), "").loadSession(folder / "a.session"), InputError);
 }
 
-TEST(OnlineCleaner, AFullDiskLeavesTheMapAndNoFile) {
+TEST(OnlineCleaner, AFolderThatIsMissingLeavesTheMap) {
   OnlineCleaner cleaner(Config(), "");
   add(cleaner, street(), 0, 2);
   EXPECT_THROW(savePoints(cleaner, "/nowhere/a.pcd", "/nowhere/b.pcd", 0.0), InputError);
