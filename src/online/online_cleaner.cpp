@@ -168,33 +168,56 @@ std::vector<ColumnIndex> OnlineCleaner::tiles() const {
 }
 
 bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
-  const ReaderLock lock(*this);
-  lock.settle(*this);
-  const Tile* tile = std::as_const(map_).map().findTile(index);
-  const TilePoints* points = points_.findTile(index);
-  Tile stored(0);
+  // As it was judged at one moment; the points are then taken in portions, so that no scan waits
+  // for a tile of a million points.
+  Tile judged(0);
   TilePoints stored_points;
-  if (on_disk_.count({index.x, index.y}) != 0) {
-    stored = Tile(map_.map().fineBins());
-    fetch(index, stored, stored_points);
-    tile = &stored;
-    points = &stored_points;
+  bool on_disk = false;
+  std::size_t size = 0;
+  {
+    const ReaderLock lock(*this);
+    lock.settle(*this);
+    on_disk = on_disk_.count({index.x, index.y}) != 0;
+    if (on_disk) {
+      judged = Tile(map_.map().fineBins());
+      fetch(index, judged, stored_points);
+    }
+    const Tile* tile = on_disk ? &judged : std::as_const(map_).map().findTile(index);
+    const TilePoints* points = on_disk ? &stored_points : points_.findTile(index);
+    if (tile == nullptr || points == nullptr) return false;
+    size = points->size();
+    // Both only grow.
+    const std::uint64_t version = 1 + tile->revision + size;
+    if (version == view.version) return false;
+    view.version = version;
+    if (!on_disk) judged = *tile;
   }
-  if (tile == nullptr || points == nullptr) return false;
-  // Both only grow.
-  const std::uint64_t version = 1 + tile->revision + points->size();
-  if (version == view.version) return false;
-  view.version = version;
   view.cleaned.clear();
   view.removed.clear();
-  const std::size_t step = points_.layout().point_step;
-  for (std::size_t i = 0; i < points->size(); ++i) {
-    auto& records =
-        map_.isDynamic(*tile, points->column[i], points->z[i]) ? view.removed : view.cleaned;
-    const std::uint8_t* record = points->records.data() + i * step;
-    records.insert(records.end(), record, record + step);
+  const auto take = [&](const TilePoints& points, std::size_t begin, std::size_t end) {
+    const std::size_t step = points.records.size() / points.size();
+    for (std::size_t i = begin; i < end; ++i) {
+      auto& records =
+          map_.isDynamic(judged, points.column[i], points.z[i]) ? view.removed : view.cleaned;
+      const std::uint8_t* record = points.records.data() + i * step;
+      records.insert(records.end(), record, record + step);
+    }
+  };
+  if (on_disk) {
+    take(stored_points, 0, size);
+    return true;
   }
-  return true;
+  constexpr std::size_t kPortion = 10000;  // points: less than a millisecond
+  bool written_to_disk = false;            // meanwhile
+  for (std::size_t begin = 0; begin < size && !written_to_disk; begin += kPortion) {
+    const ReaderLock lock(*this);
+    const TilePoints* points = points_.findTile(index);
+    written_to_disk = points == nullptr;
+    if (!written_to_disk) take(*points, begin, std::min(begin + kPortion, size));
+  }
+  if (!written_to_disk) return true;
+  view = TileView();
+  return look(index, view);
 }
 
 pcl::PCLPointCloud2 OnlineCleaner::layout() const {
