@@ -253,13 +253,17 @@ BitGrid OnlineMap::dynamicInScan() const {
     cells.occupied.at(x, y) = hit;
     cells.suspected.at(x, y) = dynamic;
     cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
-    cells.unknown.at(x, y) = hit & tile.unknown[column] & ~dynamic;
+    const Bits unknown = hit & tile.unknown[column] & ~dynamic;
+    if (unknown == 0) return;
+    // What has been there for longer does not belong to what has just entered.
+    const int longer = config_.online.live_unknown_hits;
+    cells.unknown.at(x, y) = unknown & ~tile.evidence[column].hitMoreOften(longer);
   });
   // The finished map waits for more evidence; of an object that has just entered, the cells that
   // were never seen before are all that is known.
   AgreementConfig agreement = config_.agreement;
   agreement.min_share = config_.online.live_share;
-  agreement.join_share = 0.5 * config_.online.live_share;
+  agreement.join_share = 1.5 * config_.online.live_share;
   agreement.join_rounds = config_.online.live_rounds;
   BitGrid dynamic = std::move(cells.suspected);
   growObjects(cells, dynamic, config_.matrix.bits_below, agreement);
