@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line tools as a user runs them: real processes, bags and files."""
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -23,8 +22,8 @@ from support import PACKAGE, SHARED, executable, read_pcd
 
 
 def run(name, *arguments):
-    return subprocess.run([executable(f"beautymap_{name}"), *map(str, arguments)], capture_output=True, text=True,
-                          timeout=600, check=False)
+    return subprocess.run([executable(f"beautymap_{name}"), *map(str, arguments)],
+                          capture_output=True, text=True, timeout=600, check=False)
 
 
 def scores(text):
