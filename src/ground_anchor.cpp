@@ -60,14 +60,27 @@ bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift
   return tile.ground[column] != old;
 }
 
-std::array<float, Tile::kColumns> groundOfEmptyColumns(const Tile& tile) {
+bool hangsOverFreeSpace(const Tile& tile, std::size_t column, float height, const Config& config) {
+  if (tile.evidence.empty() || tile.ground[column] == Tile::kNoHeight) return false;
+  // One cell below a surface is still in the footprint of beams that graze it.
+  const int below = BinaryEncoding(config.matrix).bitIndex(height, tile.ground[column]) - 1;
+  if (below <= 0) return false;
+  const ColumnEvidence& evidence = tile.evidence[column];
+  Bits rest = evidence.everFree() & ~tile.occupied[column] & lowBits(below);
+  for (; rest != 0; rest &= rest - 1) {
+    if (evidence.freeBefore(lowestBitIndex(rest)) >= config.evidence.min_free_in_order) return true;
+  }
+  return false;
+}
+
+std::array<float, Tile::kColumns> groundOfOtherColumns(
+    const Tile& tile, const std::bitset<Tile::kColumns>& has_ground) {
   constexpr int kFar = 4 * Tile::kSide;
   std::array<float, Tile::kColumns> height;
   std::array<int, Tile::kColumns> distance;
   for (std::size_t i = 0; i < height.size(); ++i) {
-    const bool known = tile.lowest[i] != Tile::kNoHeight;
-    height[i] = known ? tile.ground[i] : Tile::kNoHeight;
-    distance[i] = known ? 0 : kFar;
+    height[i] = has_ground[i] ? tile.ground[i] : Tile::kNoHeight;
+    distance[i] = has_ground[i] ? 0 : kFar;
   }
   // Two sweeps, each from the columns that it has passed: a distance transform.
   const auto look = [&](int x, int y, int from_x, int from_y) {
@@ -93,7 +106,7 @@ std::array<float, Tile::kColumns> groundOfEmptyColumns(const Tile& tile) {
     for (int y = 0; y < Tile::kSide; ++y) look(x, y, x, y - 1);
   }
   for (std::size_t i = 0; i < height.size(); ++i) {
-    if (tile.lowest[i] != Tile::kNoHeight) height[i] = Tile::kNoHeight;
+    if (has_ground[i]) height[i] = Tile::kNoHeight;
   }
   return height;
 }

@@ -3,6 +3,7 @@
 #include "beautymap/online_map.h"
 
 #include <algorithm>
+#include <future>
 #include <tuple>
 #include <utility>
 
@@ -16,6 +17,14 @@ namespace {
 
 // Lowest heights fall by millimetres in every scan: not a reason to estimate the ground again.
 constexpr float kNoticeable = 0.02F;  // [m]
+
+/// Whether any of these cells was seen free so often before its first hit, no more and no less.
+bool anySeenFree(const ColumnEvidence& evidence, Bits cells, int times) {
+  for (; cells != 0; cells &= cells - 1) {
+    if (evidence.freeBefore(lowestBitIndex(cells)) == times) return true;
+  }
+  return false;
+}
 
 const Config& checked(const Config& config) {
   checkConfig(config);
@@ -62,7 +71,6 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
 }
 
 void OnlineMap::addLowest() {
-  lowered_.clear();
   TileCursor<TileMap> tile_of(map_);
   for (const ColumnRun& run : placed_.runs) {
     const ColumnIndex column{placed_.anchor.x + run.x, placed_.anchor.y + run.y};
@@ -89,6 +97,7 @@ void OnlineMap::updateGround() {
       }
     }
   }
+  lowered_.clear();
   for (const ColumnIndex index : stale) estimateStaleGround(index, *map_.findTile(index));
 }
 
@@ -101,12 +110,20 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
   const float below = static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
   const auto anchor = [&](std::size_t column, float ground) {
     if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {
+      // Another cell is the ground's now, and what was taken for ground may be an object.
+      if (!tile.evidence.empty()) judgement_.judgeEvidence(tile, column, ~Bits{0});
       tile.unsettled = true;
       ++tile.revision;
     }
   };
+  std::bitset<Tile::kColumns> has_ground;
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
-    if (!tile.stale_ground[column] || tile.lowest[column] == Tile::kNoHeight) continue;
+    if (tile.lowest[column] == Tile::kNoHeight ||
+        hangsOverFreeSpace(tile, column, tile.lowest[column], config_)) {
+      continue;
+    }
+    has_ground.set(column);
+    if (!tile.stale_ground[column]) continue;
     const int x = static_cast<int>(column) >> Tile::kShift;
     const int y = static_cast<int>(column) & (Tile::kSide - 1);
     const float ground = coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height;
@@ -115,10 +132,14 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     anchor(column, std::min(ground, tile.lowest[column] + below));
   }
   tile.stale_ground.reset();
-  const auto empty = groundOfEmptyColumns(tile);
+  const auto others = groundOfOtherColumns(tile, has_ground);
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    // A column that holds points moves down only, so that they stay in cells.
+    const bool lifts =
+        tile.lowest[column] != Tile::kNoHeight && others[column] >= tile.ground[column];
+    if (others[column] == Tile::kNoHeight || lifts) continue;
     // The nearest column's bottom, which lies below its ground already.
-    if (empty[column] != Tile::kNoHeight) anchor(column, empty[column] + below);
+    anchor(column, others[column] + below);
   }
 }
 
@@ -154,18 +175,42 @@ void OnlineMap::addSeenFree() {
                   candidates.at(x, y) = (tile.occupied[column] | remembered) & ~hits_.at(x, y);
                 });
   clock.lap("matrix_comparison");
-  const BitGrid seen_free =
-      cellsSeenFree(beams_, candidates, ground, placed_, config_.matrix, config_.visibility);
+  const BitGrid seen_free = lookThroughHalves(candidates, ground);
   clock.lap("beam_visibility");
   addEvidence(seen_free, false);
   clock.lap("evidence");
 }
 
+BitGrid OnlineMap::lookThroughHalves(const BitGrid& candidates, const HeightGrid& ground) const {
+  const int middle = candidates.size() / 2;
+  const auto look = [&](int begin, int end) {
+    BitGrid half(candidates.window(), 0);
+    for (int x = begin; x < end; ++x) {
+      for (int y = 0; y < half.size(); ++y) half.at(x, y) = candidates.at(x, y);
+    }
+    return cellsSeenFree(beams_, half, ground, placed_, config_.matrix, config_.visibility);
+  };
+  auto other = std::async(std::launch::async, look, 0, middle);
+  BitGrid seen_free = look(middle, candidates.size());
+  const BitGrid rest = other.get();
+  for (int x = 0; x < middle; ++x) {
+    for (int y = 0; y < rest.size(); ++y) seen_free.at(x, y) = rest.at(x, y);
+  }
+  return seen_free;
+}
+
 void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
+  const Bits far_below = lowBits(config_.matrix.bits_below - 1);
   forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits observed = cells.at(x, y);
     if (observed == 0) return;
-    tile.evidence.touch(column).observe(hit ? observed : 0, hit ? 0 : observed);
+    ColumnEvidence& evidence = tile.evidence.touch(column);
+    evidence.observe(hit ? observed : 0, hit ? 0 : observed);
+    // Free space far below a column's ground says that it is none.
+    if (!hit && tile.lowest[column] != Tile::kNoHeight &&
+        anySeenFree(evidence, observed & far_below, config_.evidence.min_free_in_order)) {
+      lowered_.push_back({cells.window().corner.x + x, cells.window().corner.y + y});
+    }
     if ((observed & tile.occupied[column]) == 0) return;
     const auto judged = [&] {
       return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],
@@ -207,13 +252,17 @@ BitGrid OnlineMap::dynamicInScan() const {
     cells.occupied.at(x, y) = hit;
     cells.suspected.at(x, y) = dynamic;
     cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
-    cells.unknown.at(x, y) = hit & tile.unknown[column] & ~dynamic;
+    const Bits unknown = hit & tile.unknown[column] & ~dynamic;
+    if (unknown == 0) return;
+    // What has been there for longer does not belong to what has just entered.
+    const int longer = config_.online.live_unknown_hits;
+    cells.unknown.at(x, y) = unknown & ~tile.evidence[column].hitMoreOften(longer);
   });
   // The finished map waits for more evidence; of an object that has just entered, the cells that
   // were never seen before are all that is known.
   AgreementConfig agreement = config_.agreement;
   agreement.min_share = config_.online.live_share;
-  agreement.join_share = 0.5 * config_.online.live_share;
+  agreement.join_share = 1.5 * config_.online.live_share;
   agreement.join_rounds = config_.online.live_rounds;
   BitGrid dynamic = std::move(cells.suspected);
   growObjects(cells, dynamic, config_.matrix.bits_below, agreement);

@@ -210,7 +210,8 @@ struct OnlineConfig {
   double radius = 0.0;
   double free_height = 12.0;
   double ground_drift = 0.1;
-  double live_share = 0.2;
+  double live_share = 0.16;
+  int live_unknown_hits = 8;
   int live_rounds = 16;
 
   template <typename Visitor>
@@ -226,7 +227,10 @@ struct OnlineConfig {
       "a column's cells move when its ground does by more than that");
     v("live_share", live_share, 0.0, 1.0, "",
       "in the split of a scan, share of the occupied cells around that must be dynamic for an "
-      "unknown cell to be, too; half of it where the cell leans to dynamic");
+      "unknown cell to be, too; half as much again where the cell leans to dynamic");
+    v("live_unknown_hits", live_unknown_hits, 0, 1023, "scans",
+      "in the split of a scan, a cell that was never seen free is unknown when no more scans hit "
+      "it");
     v("live_rounds", live_rounds, 0, 100, "columns",
       "how far an object grows so in the split of a scan");
   }

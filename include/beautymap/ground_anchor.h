@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 
 #include "beautymap/config.h"
@@ -23,9 +24,14 @@ void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& conf
 bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift,
                   const Config& config);
 
-/// A provisional ground for the columns of a tile without points, so that they can be seen free
-/// before something enters them: that of the nearest column with points.
-/// @return  Tile::kNoHeight for columns with points, and in a tile without any
-std::array<float, Tile::kColumns> groundOfEmptyColumns(const Tile& tile);
+/// Whether the space below a height [m] of a column was seen free: what lies there is a ceiling, a
+/// roof or the upper part of an object, and no ground.
+bool hangsOverFreeSpace(const Tile& tile, std::size_t column, float height, const Config& config);
+
+/// A provisional ground for the columns of a tile of which none is known, so that they can be seen
+/// free before something enters them: that of the nearest column with ground.
+/// @return  Tile::kNoHeight for columns with ground, and in a tile without any
+std::array<float, Tile::kColumns> groundOfOtherColumns(
+    const Tile& tile, const std::bitset<Tile::kColumns>& has_ground);
 
 }  // namespace beautymap

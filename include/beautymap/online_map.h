@@ -62,6 +62,8 @@ class OnlineMap {
   void estimateStaleGround(ColumnIndex index, Tile& tile);
   void addOccupied();
   void addHitEvidence();
+  /// cellsSeenFree(), which takes most of a scan's time, in two threads.
+  BitGrid lookThroughHalves(const BitGrid& candidates, const HeightGrid& ground) const;
   /// @param hit  whether the cells were hit; otherwise they were seen free
   void addEvidence(const BitGrid& cells, bool hit);
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
@@ -78,8 +80,9 @@ class OnlineMap {
   PlacedScan placed_;  ///< the last scan
   BitGrid hits_;       ///< its matrix
   std::vector<PointClass> classes_;
-  std::vector<float> neighbours_;     ///< of one column
-  std::vector<ColumnIndex> lowered_;  ///< columns whose lowest height this scan changed
+  std::vector<float> neighbours_;  ///< of one column
+  /// Columns whose lowest height fell, or whose ground was seen to be none.
+  std::vector<ColumnIndex> lowered_;
 };
 
 }  // namespace beautymap

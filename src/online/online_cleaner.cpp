@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "beautymap/io/cloud_fields.h"
@@ -32,6 +33,11 @@ class OnlineCleaner::ReaderLock {
   explicit ReaderLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
     while (cleaner.scans_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
     lock_.lock();
+  }
+  /// What the last scan saw free is judged with the next scan, unless somebody asks before.
+  void settle(const OnlineCleaner& cleaner) const {
+    if (!cleaner.settled_) cleaner.map_.settle();
+    cleaner.settled_ = true;
   }
 
  private:
@@ -72,17 +78,21 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
   if (scan.sensor_in_map.allFinite()) fetchNear(scan.sensor_in_map);
   const auto& classes = map_.addHits(scan);
   started_ = true;
+  settled_ = true;
   return classes;
 }
 
 void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
-  const pcl::PCLPointCloud2 in_map = moveCloud(scan.cloud, scan.T_map_cloud, float64_);
   ++scans_waiting_;
   const std::lock_guard<std::mutex> lock(mutex_);
   --scans_waiting_;
-  points_.add(map_.placed(), in_map);
+  // The points and the matrix have nothing in common: two threads share the time.
+  auto stored = std::async(std::launch::async, [&] {
+    points_.add(map_.placed(), scan.cloud, scan.T_map_cloud, float64_);
+  });
   if (see_free) map_.addSeenFree();
-  map_.settle();
+  settled_ = false;
+  stored.get();
   storeFar(scan.T_map_sensor.translation());
 }
 
@@ -132,6 +142,7 @@ void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
     // Farther than what fetchNear() brings back, so that a standing sensor moves no tile.
     if (distance(index, sensor) > radius + 2.0 * side) far.push_back(index);
   });
+  if (!far.empty()) map_.settle();
   for (const ColumnIndex index : far) {
     const TilePoints& points = points_.tileAt(index);
     TileFileWriter writer(fileOf(index), header(""), config());
@@ -157,32 +168,56 @@ std::vector<ColumnIndex> OnlineCleaner::tiles() const {
 }
 
 bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
-  const ReaderLock lock(*this);
-  const Tile* tile = map_.map().findTile(index);
-  const TilePoints* points = points_.findTile(index);
-  Tile stored(0);
+  // As it was judged at one moment; the points are then taken in portions, so that no scan waits
+  // for a tile of a million points.
+  Tile judged(0);
   TilePoints stored_points;
-  if (on_disk_.count({index.x, index.y}) != 0) {
-    stored = Tile(map_.map().fineBins());
-    fetch(index, stored, stored_points);
-    tile = &stored;
-    points = &stored_points;
+  bool on_disk = false;
+  std::size_t size = 0;
+  {
+    const ReaderLock lock(*this);
+    lock.settle(*this);
+    on_disk = on_disk_.count({index.x, index.y}) != 0;
+    if (on_disk) {
+      judged = Tile(map_.map().fineBins());
+      fetch(index, judged, stored_points);
+    }
+    const Tile* tile = on_disk ? &judged : std::as_const(map_).map().findTile(index);
+    const TilePoints* points = on_disk ? &stored_points : points_.findTile(index);
+    if (tile == nullptr || points == nullptr) return false;
+    size = points->size();
+    // Both only grow.
+    const std::uint64_t version = 1 + tile->revision + size;
+    if (version == view.version) return false;
+    view.version = version;
+    if (!on_disk) judged = *tile;
   }
-  if (tile == nullptr || points == nullptr) return false;
-  // Both only grow.
-  const std::uint64_t version = 1 + tile->revision + points->size();
-  if (version == view.version) return false;
-  view.version = version;
   view.cleaned.clear();
   view.removed.clear();
-  const std::size_t step = points_.layout().point_step;
-  for (std::size_t i = 0; i < points->size(); ++i) {
-    auto& records =
-        map_.isDynamic(*tile, points->column[i], points->z[i]) ? view.removed : view.cleaned;
-    const std::uint8_t* record = points->records.data() + i * step;
-    records.insert(records.end(), record, record + step);
+  const auto take = [&](const TilePoints& points, std::size_t begin, std::size_t end) {
+    const std::size_t step = points.records.size() / points.size();
+    for (std::size_t i = begin; i < end; ++i) {
+      auto& records =
+          map_.isDynamic(judged, points.column[i], points.z[i]) ? view.removed : view.cleaned;
+      const std::uint8_t* record = points.records.data() + i * step;
+      records.insert(records.end(), record, record + step);
+    }
+  };
+  if (on_disk) {
+    take(stored_points, 0, size);
+    return true;
   }
-  return true;
+  constexpr std::size_t kPortion = 10000;  // points: less than a millisecond
+  bool written_to_disk = false;            // meanwhile
+  for (std::size_t begin = 0; begin < size && !written_to_disk; begin += kPortion) {
+    const ReaderLock lock(*this);
+    const TilePoints* points = points_.findTile(index);
+    written_to_disk = points == nullptr;
+    if (!written_to_disk) take(*points, begin, std::min(begin + kPortion, size));
+  }
+  if (!written_to_disk) return true;
+  view = TileView();
+  return look(index, view);
 }
 
 pcl::PCLPointCloud2 OnlineCleaner::layout() const {
@@ -192,6 +227,7 @@ pcl::PCLPointCloud2 OnlineCleaner::layout() const {
 
 std::pair<BitGrid, BitGrid> OnlineCleaner::bitsAround(double half_side_m) const {
   const ReaderLock lock(*this);
+  lock.settle(*this);
   const int half = std::max(1, static_cast<int>(half_side_m / config().matrix.res_g));
   const ColumnIndex centre = map_.placed().anchor;
   const ColumnWindow window{{centre.x - half, centre.y - half}, 2 * half + 1};

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/online/point_store.h"
 
+#include <algorithm>
+
 #include "beautymap/io/cloud_fields.h"
 
 namespace beautymap {
 
 bool VoxelSet::place(std::uint64_t slot) {
   const std::size_t mask = slots_.size() - 1;
-  // Fibonacci hashing: neighbouring voxels must not fill neighbouring slots.
-  std::size_t at = static_cast<std::size_t>(slot * 0x9E3779B97F4A7C15ULL >> 20) & mask;
+  std::size_t at = home(slot);
   while (slots_[at] != 0) {
     if (slots_[at] == slot) return false;
     at = (at + 1) & mask;
@@ -68,37 +69,65 @@ std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLP
   return runs;
 }
 
-std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud_in_map) {
-  if (layout_.fields.empty()) layout_ = layoutOf(cloud_in_map);
-  const std::vector<CopyRun> runs = recordRuns(cloud_in_map, layout_);
-  const std::size_t before = size_;
+std::vector<PointStore::NewPoint> PointStore::newPoints(const PlacedScan& placed) {
+  const Eigen::Vector3d origin(placed.anchor.x * res_g_, placed.anchor.y * res_g_, 0.0);
+  std::vector<NewPoint> points;
+  points.reserve(placed.size());
   ColumnIndex last{};
   TilePoints* tile = nullptr;
   for (const ColumnRun& run : placed.runs) {
     const ColumnIndex column{placed.anchor.x + run.x, placed.anchor.y + run.y};
     const ColumnIndex index = TileMap::tileOf(column);
-    if (tile == nullptr || index != last) {
-      tile = &tileAt(index);
-      last = index;
-    }
+    if (tile == nullptr || index != last) tile = &tileAt(index);
+    last = index;
     const auto in_tile = static_cast<std::uint16_t>(TileMap::indexInTile(column));
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const Eigen::Vector3d position(placed.anchor.x * res_g_ + static_cast<double>(placed.x[i]),
-                                     placed.anchor.y * res_g_ + static_cast<double>(placed.y[i]),
-                                     static_cast<double>(placed.z[i]));
-      if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(position, voxel_m_))) continue;
-      const std::size_t at = tile->records.size();
-      tile->records.resize(at + layout_.point_step);
-      copyRuns(runs,
-               cloud_in_map.data.data() +
-                   static_cast<std::size_t>(placed.source_index[i]) * cloud_in_map.point_step,
-               tile->records.data() + at);
-      tile->column.push_back(in_tile);
-      tile->z.push_back(placed.z[i]);
-      ++size_;
+      std::uint64_t voxel = 0;
+      if (voxel_m_ > 0.0) {
+        voxel = voxelKey(origin + placed.point(i).cast<double>(), voxel_m_);
+        // Neighbouring beams often end in the same voxel.
+        if (!points.empty() && points.back().tile == tile && points.back().voxel == voxel) continue;
+      }
+      points.push_back({tile, voxel, placed.source_index[i], in_tile, placed.z[i]});
     }
   }
-  return size_ - before;
+  if (voxel_m_ == 0.0) return points;
+  constexpr std::size_t kAhead = 16;  // points
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i + kAhead < points.size()) {
+      points[i + kAhead].tile->voxels.prefetch(points[i + kAhead].voxel);
+    }
+    if (points[i].tile->voxels.insert(points[i].voxel)) points[found++] = points[i];
+  }
+  points.resize(found);
+  return points;
+}
+
+std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud,
+                            const Eigen::Isometry3d& T_map_cloud, bool as_float64) {
+  const std::vector<NewPoint> added = newPoints(placed);
+  // Only these are moved: in a map with voxels they are few.
+  pcl::PCLPointCloud2 chosen = layoutOf(cloud);
+  chosen.width = static_cast<std::uint32_t>(added.size());
+  chosen.data.resize(added.size() * cloud.point_step);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const auto* record = cloud.data.data() + std::size_t{added[i].source} * cloud.point_step;
+    std::copy(record, record + cloud.point_step, chosen.data.data() + i * cloud.point_step);
+  }
+  const pcl::PCLPointCloud2 in_map = moveCloud(chosen, T_map_cloud, as_float64);
+  if (layout_.fields.empty()) layout_ = layoutOf(in_map);
+  const std::vector<CopyRun> runs = recordRuns(in_map, layout_);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    TilePoints& tile = *added[i].tile;
+    const std::size_t at = tile.records.size();
+    tile.records.resize(at + layout_.point_step);
+    copyRuns(runs, in_map.data.data() + i * in_map.point_step, tile.records.data() + at);
+    tile.column.push_back(added[i].column);
+    tile.z.push_back(added[i].z);
+  }
+  size_ += added.size();
+  return added.size();
 }
 
 const TilePoints* PointStore::findTile(ColumnIndex tile) const {

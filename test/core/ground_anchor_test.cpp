@@ -97,24 +97,25 @@ TEST(GroundAnchor, AnEmptyColumnIsAnchoredAtTheLatestEstimate) {
   EXPECT_EQ(tile.ground[kColumn], 1.0625F);
 }
 
-TEST(GroundAnchor, EmptyColumnsTakeTheGroundOfTheNearestOne) {
+TEST(GroundAnchor, OtherColumnsTakeTheGroundOfTheNearestOne) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     test::Random random(seed);
     Tile tile(1);
     std::vector<std::size_t> known;
+    std::bitset<Tile::kColumns> has_ground;
     for (int i = random.integer(1, 12); i > 0; --i) {
       known.push_back(static_cast<std::size_t>(random.integer(0, Tile::kColumns - 1)));
-      tile.lowest[known.back()] = 0.0F;
+      has_ground.set(known.back());
       tile.ground[known.back()] = static_cast<float>(known.back());
     }
-    const auto height = groundOfEmptyColumns(tile);
+    const auto height = groundOfOtherColumns(tile, has_ground);
     const auto distance = [](std::size_t a, std::size_t b) {
       const int ax = static_cast<int>(a >> Tile::kShift), bx = static_cast<int>(b >> Tile::kShift);
       const int ay = static_cast<int>(a % Tile::kSide), by = static_cast<int>(b % Tile::kSide);
       return std::abs(ax - bx) + std::abs(ay - by);
     };
     for (std::size_t column = 0; column < Tile::kColumns; ++column) {
-      if (tile.lowest[column] != Tile::kNoHeight) {
+      if (has_ground[column]) {
         EXPECT_EQ(height[column], Tile::kNoHeight);
         continue;
       }
@@ -123,7 +124,22 @@ TEST(GroundAnchor, EmptyColumnsTakeTheGroundOfTheNearestOne) {
       EXPECT_EQ(distance(static_cast<std::size_t>(height[column]), column), nearest);
     }
   }
-  EXPECT_EQ(groundOfEmptyColumns(Tile(1))[0], Tile::kNoHeight);
+  EXPECT_EQ(groundOfOtherColumns(Tile(1), {})[0], Tile::kNoHeight);
+}
+
+TEST(GroundAnchor, WhatIsAboveFreeSpaceIsNoGround) {
+  const Config config;
+  Tile tile(1);
+  tile.ground[7] = 10.0F;
+  EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 13.1F, config)) << "nothing was seen";
+  tile.occupied[7] = Bits{1} << 15;
+  for (int scan = 0; scan < config.evidence.min_free_in_order; ++scan) {
+    EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 13.1F, config)) << "seen free too seldom";
+    tile.evidence.touch(7).observe(tile.occupied[7], Bits{1} << 12);
+  }
+  EXPECT_TRUE(hangsOverFreeSpace(tile, 7, 13.1F, config));
+  EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 12.7F, config)) << "beams that graze it end there";
+  EXPECT_FALSE(hangsOverFreeSpace(tile, 8, 13.1F, config)) << "another column";
 }
 
 }  // namespace

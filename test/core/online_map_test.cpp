@@ -150,6 +150,45 @@ TEST(OnlineMap, ScansOfAKnownGroundGiveTheMapOfAReplay) {
   EXPECT_EQ(differing, 0);
 }
 
+/// From a sensor that sees the floor only from 8.5 m on.
+LabelledScan lookAhead(const BoxWorld& world) {
+  return test::castScan(world, Eigen::Vector3d(0.1, 0.2, 1.5), 64, -10.0, 30.0, 720);
+}
+
+TEST(OnlineMap, WhatEntersBelowACeilingIsDynamicAtOnce) {
+  // The ceiling alone is seen there: its height is no ground, as the space below is free.
+  const Box ceiling{{3, -2, 3}, {7, 3, 3.2}};
+  OnlineMap map{Config()};
+  BoxWorld world = yard({person(20, 20), ceiling});
+  for (int i = 0; i < 15; ++i) add(map, lookAhead(world).scan);
+  world.boxes[kVisitor] = person(5, 1);
+  const LabelledScan entered = lookAhead(world);
+  EXPECT_GT(shareOf(entered, map.addHits(entered.scan), PointClass::kDynamic), 0.95);
+}
+
+TEST(OnlineMap, CellsAreJudgedByTheirEvidenceAlsoWhenTheGroundFell) {
+  // A visitor's upper part is all that is seen of its columns, until the floor is.
+  OnlineMap map{Config()};
+  for (int i = 0; i < 6; ++i) add(map, lookAhead(yard({person(2, 1)})).scan);
+  for (int i = 0; i < 6; ++i) add(map, look({}).scan);
+  const MapJudgement judgement{Config()};
+  int judged = 0;
+  std::as_const(map).map().forEachTile([&](ColumnIndex, const Tile& tile) {
+    Tile again = tile;
+    for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+      judgement.judgeEvidence(again, column, ~Bits{0});
+      judged += again.suspected[column] != 0 ? 1 : 0;
+    }
+    EXPECT_EQ(again.suspected, tile.suspected);
+    EXPECT_EQ(again.strong, tile.strong);
+    EXPECT_EQ(again.leaning, tile.leaning);
+    EXPECT_EQ(again.unknown, tile.unknown);
+  });
+  EXPECT_GT(judged, 0);
+  const LabelledScan visit = lookAhead(yard({person(2, 1)}));
+  EXPECT_GT(shareOf(visit, classesOf(map, visit.scan), PointClass::kDynamic), 0.95);
+}
+
 TEST(OnlineMap, AMapAtUtmCoordinatesIsAsExactAsOneAtTheOrigin) {
   // Multiples of a tile, so that both maps have the same columns.
   const Eigen::Vector3d utm(16.0 * 30000, 16.0 * 300000, 512.0);

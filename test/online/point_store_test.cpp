@@ -12,6 +12,8 @@
 namespace beautymap {
 namespace {
 
+const Eigen::Isometry3d kAtOrigin = Eigen::Isometry3d::Identity();
+
 TEST(VoxelSet, HoldsEachKeyOnce) {
   test::Random random(3);
   VoxelSet voxels;
@@ -32,7 +34,7 @@ TEST(PointStore, KeepsEveryRecordInTheTileOfItsColumn) {
   PointStore store(0.5, 0.0);
   const PlacedScan placed =
       test::placedScan({0, 0}, {0, 0, 0}, {{0.1, 0.2, 1.0}, {-0.1, 0.2, 2.0}, {0.1, 0.2, 1.0}});
-  EXPECT_EQ(store.add(placed, cloud), 3U);
+  EXPECT_EQ(store.add(placed, cloud, kAtOrigin, false), 3U);
   ASSERT_NE(store.findTile({0, 0}), nullptr);
   ASSERT_NE(store.findTile({-1, 0}), nullptr);
   pcl::PCLPointCloud2 kept = store.layout();
@@ -62,19 +64,21 @@ TEST(PointStore, KeepsTheFirstPointOfEachVoxelWhereverTheSensorIs) {
                      std::floor((anchor.y * 0.5 + points.back().y()) / 0.25),
                      std::floor(points.back().z() / 0.25));
     }
-    store.add(test::placedScan(anchor, {0, 0, 0}, points), test::makeCloud(floats));
+    store.add(test::placedScan(anchor, {0, 0, 0}, points), test::makeCloud(floats), kAtOrigin,
+              false);
   }
   EXPECT_EQ(store.size(), voxels.size());
 }
 
 TEST(PointStore, AnotherSensorsFieldsAreMatchedByName) {
   PointStore store(0.5, 0.0);
-  store.add(test::placedScan({0, 0}, {0, 0, 0}, {{1, 1, 1}}), test::makeCloud({{1, 1, 1}}, 9));
+  store.add(test::placedScan({0, 0}, {0, 0, 0}, {{1, 1, 1}}), test::makeCloud({{1, 1, 1}}, 9),
+            kAtOrigin, false);
   // y and x swapped, no label, another field.
   test::CloudBuilder builder;
   builder.field("y", 7, 0).field("x", 7, 4).field("z", 7, 8).field("ring", 4, 12).size(1, 14);
   builder.set(0, 0, 2.0F).set(0, 4, 3.0F).set(0, 8, 4.0F);
-  store.add(test::placedScan({0, 0}, {0, 0, 0}, {{3, 2, 4}}), builder.build());
+  store.add(test::placedScan({0, 0}, {0, 0, 0}, {{3, 2, 4}}), builder.build(), kAtOrigin, false);
   pcl::PCLPointCloud2 cloud = store.layout();
   cloud.data = store.findTile({0, 0})->records;
   cloud.width = 2;

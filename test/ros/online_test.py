@@ -6,6 +6,7 @@ import contextlib
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -30,18 +31,11 @@ from std_msgs.msg import Header
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[2]
-SHARED = pathlib.Path(os.environ.get("BEAUTYMAP_SHARED", PACKAGE.parent / "shared"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import PACKAGE, SHARED, executable, read_pcd
+
 SCANS = 40
 NODE = "/beautymap"
-
-
-def executable(name):
-    for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
-        path = pathlib.Path(folder) / "lib/beautymap" / name
-        if path.exists():
-            return str(path)
-    raise RuntimeError(f"{name} is in no workspace of CMAKE_PREFIX_PATH")
 
 
 def wait_for(condition, what, timeout=30.0):
@@ -54,24 +48,13 @@ def wait_for(condition, what, timeout=30.0):
     raise AssertionError(f"not within {timeout} s: {what}")
 
 
-def read_pcd(path):
-    """The points as a structured array."""
-    raw = pathlib.Path(path).read_bytes()
-    end = raw.index(b"\n", raw.index(b"DATA ")) + 1
-    head = dict(line.split(None, 1) for line in raw[:end].decode().splitlines() if line[0] != "#")
-    kinds = {"F4": "<f4", "F8": "<f8", "U1": "u1", "U2": "<u2", "U4": "<u4"}
-    types = [kinds[t + s] for t, s in zip(head["TYPE"].split(), head["SIZE"].split())]
-    return numpy.frombuffer(raw, numpy.dtype(list(zip(head["FIELDS"].split(), types))),
-                            int(head["POINTS"]), end)
-
-
 def labels_of(folder_or_stem):
     """(points sorted by what identifies them, whether each was removed)"""
     stem = str(folder_or_stem)
     names = (stem + ".pcd", stem + "_dynamic.pcd")
     if os.path.isdir(stem):
         names = (stem + "/cleaned.pcd", stem + "/dynamic.pcd")
-    points = [read_pcd(name) for name in names]
+    points = [read_pcd(name)[1] for name in names]
     removed = numpy.repeat([False, True], [len(p) for p in points])
     points = numpy.concatenate(points)
     # By x, then y: one integer, as several keys take a minute for a whole drive.
@@ -97,7 +80,7 @@ def cloud_size(cloud):
 class Node:
     """A running node, and what it published."""
 
-    def __init__(self, parameters, nodelet=False, launch=None):
+    def __init__(self, parameters, nodelet=False, launch=None, prepare=None):
         self.reports, self.maps, self.removed, self.dynamic, self.static = [], [], [], [], []
         self.diagnostics, self.matrices = [], []
         self.log = tempfile.NamedTemporaryFile(mode="w+", suffix=".log")
@@ -123,7 +106,8 @@ class Node:
         self.subscribers.append(
             rospy.Subscriber("/diagnostics", DiagnosticArray, self.diagnostics.append))
         self.process = subprocess.Popen(command, stdout=self.log, stderr=subprocess.STDOUT,
-                                        start_new_session=True,
+                                        start_new_session=True, preexec_fn=prepare,
+                                        restore_signals=prepare is None,
                                         env={**os.environ, "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"})
 
     def wait_until_connected(self):
@@ -157,8 +141,8 @@ class Node:
 
 
 @contextlib.contextmanager
-def running(parameters=None, nodelet=False, launch=None):
-    node = Node(parameters or {}, nodelet, launch)
+def running(parameters=None, nodelet=False, launch=None, prepare=None):
+    node = Node(parameters or {}, nodelet, launch, prepare)
     try:
         node.wait_until_connected()
         yield node
@@ -206,11 +190,11 @@ class Online(unittest.TestCase):
                     target.write(new_topic, new_message, new_t)
         return path
 
-    def check_map(self, node, at_least=0.99):
+    def check_map(self, node, at_least=0.99, folder=None):
         """The finished map is that of the replay."""
         saved = node.call("save_map", SaveMap, path="map.pcd", voxel=0.0, session=False)
         self.assertTrue(saved.success, saved.message)
-        share = agreement(self.folder / "out/map", self.offline)
+        share = agreement((folder or self.folder / "out") / "map", self.offline)
         self.assertGreaterEqual(share, at_least)
         self.assertGreater(saved.removed_points, 100)
 
@@ -283,7 +267,7 @@ class Online(unittest.TestCase):
 
         def register(topic, message, t):
             if topic == "/cloud":
-                points = read_pcd(next(clouds))
+                _, points = read_pcd(next(clouds))
                 message.header.frame_id = frame
                 message.point_step = points.dtype.itemsize
                 offsets = {n: points.dtype.fields[n][1] for n in points.dtype.names}
@@ -497,12 +481,48 @@ class Online(unittest.TestCase):
                 self.assertTrue(saved.message)
             self.assertFalse(os.path.exists("/tmp/beautymap_escaped.pcd"))
             # A folder that cannot be written: the service says so, the map stays.
+            (self.folder / "out").mkdir(exist_ok=True)
             (self.folder / "out/file.pcd").write_text("")
             saved = node.call("save_map", SaveMap, path="file.pcd/a.pcd", voxel=0.0, session=False)
             self.assertFalse(saved.success)
             self.assertTrue(node.call("save_map", SaveMap, path="a", voxel=0.5, session=False).success)
             self.assertFalse(node.call("load_map", LoadMap, path="a.session").success)
             self.assertFalse(node.call("load_map", LoadMap, path="../a.session").success)
+
+    def test_a_full_disk_leaves_the_map_and_no_file(self):
+        folder = self.folder / "full"
+
+        def fill_disk():
+            # Longer files cannot be written. Python ignores SIGXFSZ, and so does then the node: its
+            # writes fail as on a full disk.
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, resource.RLIM_INFINITY))
+
+        with running(self.parameters(output_folder=str(folder)), prepare=fill_disk) as node:
+            play(self.bag, rate=4.0)
+            points = node.wait_for_scans(SCANS).map_points
+            # The points are too many; with fewer of them, the session is too large.
+            for voxel, left in ((0.0, set()), (2.0, {"a.pcd", "a_dynamic.pcd"})):
+                saved = node.call("save_map", SaveMap, path="a.pcd", voxel=voxel, session=True)
+                self.assertFalse(saved.success)
+                self.assertIn("File too large", saved.message)
+                self.assertEqual(set(os.listdir(folder)), left)
+            resource.prlimit(node.process.pid, resource.RLIMIT_FSIZE,
+                             (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            saved = node.call("save_map", SaveMap, path="a.pcd", voxel=0.0, session=True)
+            self.assertTrue(saved.success, saved.message)
+            self.assertEqual(saved.cleaned_points + saved.removed_points, points)
+            self.check_map(node, folder=folder)
+
+    def test_a_read_only_folder_leaves_the_map(self):
+        # Not even root writes there.
+        with running(self.parameters(output_folder="/proc/self")) as node:
+            play(self.bag, rate=4.0)
+            node.wait_for_scans(SCANS)
+            for path in ("a.pcd", "folder/a.pcd"):
+                saved = node.call("save_map", SaveMap, path=path, voxel=0.0, session=False)
+                self.assertFalse(saved.success)
+                self.assertIn("a.pcd", saved.message)
+            wait_for(lambda: node.maps and cloud_size(node.maps[-1]) > 1000, "the map")
 
     def test_shutdown_saves_the_map_when_asked_to(self):
         with running(self.parameters(save_on_exit=True)) as node:

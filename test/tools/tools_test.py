@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line tools as a user runs them: real processes, bags and files."""
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -18,37 +17,17 @@ import numpy
 import rosbag
 import rostest
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[2]
-SHARED = pathlib.Path(os.environ.get("BEAUTYMAP_SHARED", PACKAGE.parent / "shared"))
-
-
-def tool_path(name):
-    """The executable in the devel space whose setup or build started this test."""
-    for folder in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
-        path = pathlib.Path(folder) / "lib/beautymap" / f"beautymap_{name}"
-        if path.exists():
-            return str(path)
-    raise RuntimeError(f"beautymap_{name} is in no workspace of CMAKE_PREFIX_PATH")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import PACKAGE, SHARED, executable, read_pcd
 
 
 def run(name, *arguments):
-    return subprocess.run([tool_path(name), *map(str, arguments)], capture_output=True, text=True,
-                          timeout=600, check=False)
+    return subprocess.run([executable(f"beautymap_{name}"), *map(str, arguments)],
+                          capture_output=True, text=True, timeout=600, check=False)
 
 
 def scores(text):
     return [float(v) for v in re.search(r"SA (\S+) DA (\S+) AA (\S+) HA (\S+)", text).groups()]
-
-
-def read_pcd(path):
-    """The header's lines as a dictionary, and the points as a structured array."""
-    raw = pathlib.Path(path).read_bytes()
-    end = raw.index(b"\n", raw.index(b"DATA ")) + 1
-    head = dict(line.split(None, 1) for line in raw[:end].decode().splitlines() if line[0] != "#")
-    kinds = {"F4": "<f4", "F8": "<f8", "U1": "u1", "U2": "<u2", "U4": "<u4"}
-    types = [kinds[t + s] for t, s in zip(head["TYPE"].split(), head["SIZE"].split())]
-    dtype = numpy.dtype(list(zip(head["FIELDS"].split(), types)))
-    return head, numpy.frombuffer(raw, dtype, int(head["POINTS"]), end)
 
 
 class Tools(unittest.TestCase):

@@ -85,7 +85,8 @@ class OnlineCleaner {
   TileFileWriter::Header header(const std::string& map_frame) const;
 
   std::string folder_;
-  OnlineMap map_;
+  mutable OnlineMap map_;        ///< changed by those who look only to judge what is not yet
+  mutable bool settled_ = true;  ///< everything in the map is judged
   PointStore points_;
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> on_disk_;  ///< tile: its points
   bool float64_ = false;

@@ -43,6 +43,8 @@ class BeautyMapRos {
   BeautyMapRos& operator=(const BeautyMapRos&) = delete;
 
  private:
+  static constexpr double kWarningPeriod = 5.0;  ///< [s] of warnings that come again and again
+
   struct Totals {
     std::uint64_t scans = 0;
     std::uint64_t skipped = 0;
@@ -55,25 +57,28 @@ class BeautyMapRos {
   std::shared_ptr<OnlineCleaner> newCleaner() const;
   std::shared_ptr<OnlineCleaner> cleaner() const;
   void startMap(std::shared_ptr<OnlineCleaner> cleaner);
-  void skip(const std::string& why);
+  void reconfigure(BeautyMapConfig& config, std::uint32_t);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  // beautymap_ros_scans.cpp
   void work();
+  void skip(const std::string& why);
   void process(const PosedCloud& posed);
   void publishSplit(const PosedCloud& posed, const pcl::PCLPointCloud2& cloud,
                     const std::vector<PointClass>& classes);
   void report(const PosedCloud& posed, const std::vector<PointClass>& classes, double latency_ms,
               const StageTimes& before);
 
+  // beautymap_ros_loop_closure.cpp
   void takePath(const nav_msgs::Path::ConstPtr& path);
   void rebuild(const PoseCorrection& correction);
   void stopRebuilding();
 
+  // beautymap_ros_services.cpp
   bool save(SaveMap::Request& request, SaveMap::Response& response);
   bool load(LoadMap::Request& request, LoadMap::Response& response);
   bool reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&);
   void saveTo(const std::string& path, double voxel_m, bool session, SaveMap::Response& response);
-  void reconfigure(BeautyMapConfig& config, std::uint32_t);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   ros::NodeHandle nh_, private_nh_;
   NodeOptions options_;
