@@ -52,7 +52,7 @@ Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x
     const int bit = lowestBitIndex(rest);
     const int count = countAround(dynamic_around, bit, counted);
     const bool leans = (leaning >> bit & 1) != 0;
-    const double share = leans ? config.join_share : config.min_share;
+    const double share = leans ? config.join_share : config.unknown_share;
     if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
       joining |= lowestBit(rest);
     }

@@ -189,6 +189,7 @@ struct AgreementConfig {
   double min_share = 0.6;
   double min_share_strong = 0.2;
   double join_share = 0.4;
+  double unknown_share = 0.3;
   int join_rounds = 8;
 
   template <typename Visitor>
@@ -199,6 +200,7 @@ struct AgreementConfig {
       "share of its occupied neighbours that must be dynamic for a cell to be, too");
     v("min_share_strong", min_share_strong, 0.0, 1.0, "", "the same where the evidence is strong");
     v("join_share", join_share, 0.0, 1.0, "", "the same where a cell only leans to dynamic");
+    v("unknown_share", unknown_share, 0.0, 1.0, "", "the same where a cell is unknown");
     v("join_rounds", join_rounds, 0, 30, "columns",
       "how far an object grows over leaning and unknown cells");
   }

@@ -131,7 +131,7 @@ bool joins(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, i
                                    !isSet(dynamic, x, y, bit - 1);
   if (rests_on_what_stays) return false;
   const Around around = look(window, dynamic, x, y, bit, ground_bit);
-  const double share = leaning ? config.join_share : config.min_share;
+  const double share = leaning ? config.join_share : config.unknown_share;
   return around.dynamic > 0 && around.dynamic >= share * around.occupied;
 }
 
@@ -205,7 +205,7 @@ TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
     const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
     const int ground_bit = random.integer(-1, 40);
     AgreementConfig config;
-    config.min_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
+    config.unknown_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
     config.join_share = random.pick<double>({0.0, 0.2, 0.4, 0.8});
     config.join_rounds = 1;
     BitGrid result = window.suspected;
@@ -257,6 +257,21 @@ TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
   // Cells that nothing speaks for do not join.
   window.leaning = BitGrid(window.leaning.window(), 0);
   EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside);
+}
+
+TEST(Agreement, AnUnknownCellNeedsFewerDynamicNeighboursThanALeaningOne) {
+  // A far object of which the beams saw one row free: 3 of 8 neighbours of the next are dynamic.
+  EvidenceWindow window = emptyWindow(9);
+  setSuspected(window, {4, 4, 2, 6, 20, 20});
+  set(window.occupied, {4, 4, 2, 6, 21, 22});
+  EvidenceWindow leaning = window;
+  set(window.unknown, {4, 4, 2, 6, 21, 21});
+  set(leaning.leaning, {4, 4, 2, 6, 21, 21});
+  BitGrid of_unknown = window.suspected, of_leaning = leaning.suspected;
+  growObjects(window, of_unknown, kGround, {});
+  growObjects(leaning, of_leaning, kGround, {});
+  EXPECT_NE(of_unknown.at(4, 4) >> 21 & 1, Bits{0});
+  EXPECT_EQ(of_leaning.at(4, 4) >> 21 & 1, Bits{0});
 }
 
 TEST(Agreement, WhatRestsOnACellThatStaysDoesNotJoin) {
