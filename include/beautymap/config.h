@@ -191,6 +191,7 @@ struct AgreementConfig {
   double join_share = 0.4;
   double unknown_share = 0.3;
   int join_rounds = 8;
+  int surface_bits = 2;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -203,6 +204,8 @@ struct AgreementConfig {
     v("unknown_share", unknown_share, 0.0, 1.0, "", "the same where a cell is unknown");
     v("join_rounds", join_rounds, 0, 30, "columns",
       "how far an object grows over leaning and unknown cells");
+    v("surface_bits", surface_bits, 0, 16, "bits",
+      "that many dynamic cells upon one that stays, with none above them, are its noise");
   }
 };
 
