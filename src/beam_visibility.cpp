@@ -12,6 +12,14 @@ namespace {
 // Nearer columns span so much of the view that a beam image says little about them.
 constexpr float kNearestColumn = 0.5F;  // [m]
 
+/// How far a point that a scan measured at a range may be from where it was [m]: one standard
+/// deviation of the scan's pose.
+float poseError(float range, const VisibilityConfig& config) {
+  const float position = static_cast<float>(config.pose_position);
+  const float turned = range * static_cast<float>(config.pose_rotation * 3.14159265358979 / 180.0);
+  return std::sqrt(position * position + turned * turned);
+}
+
 /// Where one column of the map stands in the beam image.
 struct ColumnView {
   int first_azimuth;  ///< pixel, not yet wrapped
@@ -19,27 +27,34 @@ struct ColumnView {
   BeamImage::Pixel behind;  ///< greater pixels have beams that passed the column
   float bottom_slope;       ///< of bit 0, in pixels
   float bit_slopes;         ///< height of a bit in pixels
+  float more_slopes;        ///< around a cell [pixels]
 
-  int firstSlope(int bit) const {
-    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes);
+  int firstSlope(int bit) const { return slopeOf(bit, -more_slopes); }
+  int lastSlope(int bit) const { return slopeOf(bit + 1, more_slopes); }
+
+ private:
+  int slopeOf(int bit, float more) const {
+    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes + more);
   }
-  int lastSlope(int bit) const { return firstSlope(bit + 1); }
 };
 
 ColumnView viewColumn(const BeamImage& beams, float x, float y, float distance, float bottom,
-                      const MatrixConfig& matrix, float margin) {
+                      const MatrixConfig& matrix, float margin, float around = 0.0F) {
   const float res_g = static_cast<float>(matrix.res_g);
   const float per_metre = 1.0F / distance;
   // The directions to the ends of the column's width, seen from the sensor.
-  const float half = 0.5F * res_g * per_metre;
+  const float half = (0.5F * res_g + around) * per_metre;
   const float first = beams.azimuthPixel(x + half * y, y - half * x);
   float last = beams.azimuthPixel(x - half * y, y + half * x);
   if (last < first) last += static_cast<float>(beams.azimuthPixels());
   const float bottom_slope = beams.slopePixel(bottom * per_metre);
   const float top_slope = beams.slopePixel((bottom + static_cast<float>(matrix.res_h)) * per_metre);
-  return {floorToInt(first), floorToInt(last),
-          BeamImage::limitFor(distance + 0.5F * res_g + margin), bottom_slope,
-          top_slope - bottom_slope};
+  return {floorToInt(first),
+          floorToInt(last),
+          BeamImage::limitFor(distance + 0.5F * res_g + margin),
+          bottom_slope,
+          top_slope - bottom_slope,
+          beams.slopePixel(around * per_metre) - beams.slopePixel(0.0F)};
 }
 
 int wrapped(int azimuth, int pixels) {
@@ -218,11 +233,20 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
                        scan.sensor.y();
       const float distance = std::sqrt(dx * dx + dy * dy);
       if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const ColumnView view = viewColumn(beams, dx, dy, distance, ground.at(x, y) - scan.sensor.z(),
-                                         matrix, static_cast<float>(config.margin));
+      const float bottom = ground.at(x, y) - scan.sensor.z();
+      const float unsure = poseError(distance, config);
+      const float margin = static_cast<float>(config.margin) + unsure;
+      const ColumnView view = viewColumn(beams, dx, dy, distance, bottom, matrix, margin);
       const Bits judged = inImage(candidates.at(x, y), beams, view);
       if (judged == 0 || !anyBeamPassed(beams, view)) continue;
-      seen_free.at(x, y) = seenFree(judged, beams, view, config, sums);
+      Bits free = seenFree(judged, beams, view, config, sums);
+      if (unsure > 0.0F) {
+        // The cell may be anywhere around where the pose puts it: all of that must be free.
+        free = seenFree(free, beams,
+                        viewColumn(beams, dx, dy, distance, bottom, matrix, margin, unsure), config,
+                        sums);
+      }
+      seen_free.at(x, y) = free;
     }
   }
   return seen_free;

@@ -138,6 +138,8 @@ struct VisibilityConfig {
   int min_beams = 2;
   double min_share = 0.8;
   double margin = 0.3;
+  double pose_position = 0.0;
+  double pose_rotation = 0.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -149,6 +151,12 @@ struct VisibilityConfig {
     v("min_share", min_share, 0.5, 1.0, "",
       "share of the beams in the footprint that must have passed");
     v("margin", margin, 0.0, 5.0, "m", "a beam passed when it ended that far behind the cell");
+    v("pose_position", pose_position, 0.0, 2.0, "m",
+      "standard deviation of a scan's position, if known: cells are seen free only with that "
+      "margin "
+      "around them");
+    v("pose_rotation", pose_rotation, 0.0, 10.0, "deg",
+      "standard deviation of a scan's rotation, if known: the same, growing with the range");
   }
 };
 
