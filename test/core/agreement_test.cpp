@@ -297,7 +297,7 @@ TEST(Agreement, SurfaceNoiseAgreesWithLoopsOverTheNeighbours) {
       }
     }
   }
-  EXPECT_GT(noise, 500);
+  EXPECT_GT(noise, 200);
   EXPECT_GT(others, 10000);
 }
 
