@@ -66,11 +66,12 @@ Classes classesOf(const OnlineMap& map, const Scan& scan) {
   const PlacedScan placed =
       placeScan(scan, map.zOrigin(), matrix.res_g, map.config().scan, dropped);
   Classes classes(scan.cloud.size(), PointClass::kDropped);
-  auto source = placed.source_index.begin();
-  forEachTilePoint(
-      map.map(), placed, matrix.res_g, [&](const Tile* tile, std::size_t column, float z) {
-        classes[*source++] =
-            map.isDynamic(*tile, column, z) ? PointClass::kDynamic : PointClass::kStatic;
+  forEachTileRun(
+      map.map(), placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+          const bool dynamic = map.isDynamic(*tile, column, placed.z[i]);
+          classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
+        }
       });
   return classes;
 }

@@ -3,8 +3,10 @@
 #include "beautymap/beam_visibility.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace beautymap {
 namespace {
@@ -15,8 +17,8 @@ constexpr float kNearestColumn = 0.5F;  // [m]
 /// How far a point that a scan measured at a range may be from where it was [m]: one standard
 /// deviation of the scan's pose.
 float poseError(float range, const VisibilityConfig& config) {
-  const float position = static_cast<float>(config.pose_position);
-  const float turned = range * static_cast<float>(config.pose_rotation * 3.14159265358979 / 180.0);
+  const auto position = static_cast<float>(config.pose_position);
+  const auto turned = range * static_cast<float>(config.pose_rotation * 3.14159265358979 / 180.0);
   return std::sqrt(position * position + turned * turned);
 }
 
@@ -27,7 +29,7 @@ struct ColumnView {
   BeamImage::Pixel behind;  ///< greater pixels have beams that passed the column
   float bottom_slope;       ///< of bit 0, in pixels
   float bit_slopes;         ///< height of a bit in pixels
-  float more_slopes;        ///< around a cell [pixels]
+  float more_slopes;        ///< margin below and above a cell in pixels
 
   int firstSlope(int bit) const { return slopeOf(bit, -more_slopes); }
   int lastSlope(int bit) const { return slopeOf(bit + 1, more_slopes); }
@@ -38,24 +40,69 @@ struct ColumnView {
   }
 };
 
-ColumnView viewColumn(const BeamImage& beams, float x, float y, float distance, float bottom,
-                      const MatrixConfig& matrix, float margin, float around = 0.0F) {
-  const float res_g = static_cast<float>(matrix.res_g);
-  const float per_metre = 1.0F / distance;
-  // The directions to the ends of the column's width, seen from the sensor.
-  const float half = (0.5F * res_g + around) * per_metre;
-  const float first = beams.azimuthPixel(x + half * y, y - half * x);
-  float last = beams.azimuthPixel(x - half * y, y + half * x);
-  if (last < first) last += static_cast<float>(beams.azimuthPixels());
-  const float bottom_slope = beams.slopePixel(bottom * per_metre);
-  const float top_slope = beams.slopePixel((bottom + static_cast<float>(matrix.res_h)) * per_metre);
-  return {floorToInt(first),
-          floorToInt(last),
-          BeamImage::limitFor(distance + 0.5F * res_g + margin),
-          bottom_slope,
-          top_slope - bottom_slope,
-          beams.slopePixel(around * per_metre) - beams.slopePixel(0.0F)};
-}
+/// Some columns of one row of the window. One array per quantity, of a fixed size: the compiler
+/// then views several columns at a time.
+class ColumnViews {
+ public:
+  bool full() const { return size_ == kCapacity; }
+  void clear() { size_ = 0; }
+  /// @param y       index in the row
+  /// @param y_m     of the column's centre, seen from the sensor [m]
+  /// @param bottom  of its bit 0, from the sensor's height [m]
+  void add(int y, float y_m, float bottom) {
+    y_[size_] = y;
+    y_m_[size_] = y_m;
+    bottom_[size_] = bottom;
+    ++size_;
+  }
+  /// @param x_m  of the row, seen from the sensor [m]
+  void view(PixelScale scale, float x_m, const MatrixConfig& matrix) {
+    const auto half_width = 0.5F * static_cast<float>(matrix.res_g);
+    const auto res_h = static_cast<float>(matrix.res_h);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const float y_m = y_m_[i];
+      const float distance = std::sqrt(x_m * x_m + y_m * y_m);
+      const float per_metre = 1.0F / distance;
+      // The directions to the ends of the column's width, seen from the sensor.
+      const float half = half_width * per_metre;
+      first_[i] = scale.azimuthPixel(x_m + half * y_m, y_m - half * x_m);
+      last_[i] = scale.azimuthPixel(x_m - half * y_m, y_m + half * x_m);
+      bottom_slope_[i] = scale.slopePixel(bottom_[i] * per_metre);
+      top_slope_[i] = scale.slopePixel((bottom_[i] + res_h) * per_metre);
+      distance_[i] = distance;
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  int y(std::size_t i) const { return y_[i]; }
+  float distance(std::size_t i) const { return distance_[i]; }
+  /// @param behind_m  what ends so far behind the column's centre has passed it [m]
+  /// @param around_m  margin around each cell of the column [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, const MatrixConfig& matrix, float behind_m,
+                float around_m = 0.0F) const {
+    const float turn = last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
+    const float last = last_[i] + turn;
+    const float quarter = 0.25F * static_cast<float>(beams.azimuthPixels());
+    const float wider =
+        std::min(quarter, (last - first_[i]) * around_m / static_cast<float>(matrix.res_g));
+    const float bit_slopes = top_slope_[i] - bottom_slope_[i];
+    return {floorToInt(first_[i] - wider),
+            floorToInt(last + wider),
+            BeamImage::limitFor(distance_[i] + behind_m),
+            bottom_slope_[i],
+            bit_slopes,
+            bit_slopes * around_m / static_cast<float>(matrix.res_h)};
+  }
+
+ private:
+  static constexpr std::size_t kCapacity = 64;
+  template <typename T>
+  using Values = std::array<T, kCapacity>;
+
+  std::size_t size_ = 0;
+  Values<int> y_;
+  Values<float> y_m_, bottom_, distance_, first_, last_, bottom_slope_, top_slope_;
+};
 
 int wrapped(int azimuth, int pixels) {
   return azimuth < 0 ? azimuth + pixels : azimuth >= pixels ? azimuth - pixels : azimuth;
@@ -88,14 +135,16 @@ class BeamSums {
   void sum(const BeamImage& beams, const ColumnView& view, int first_slope, int last_slope) {
     first_slope_ = first_slope;
     last_slope_ = last_slope;
-    rows_.clear();
-    for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
-      rows_.push_back(beams.row(wrapped(u, beams.azimuthPixels())) + first_slope -
-                      beams.firstSlope());
+    rows_.resize(static_cast<std::size_t>(view.last_azimuth - view.first_azimuth) + 1);
+    int azimuth = wrapped(view.first_azimuth, beams.azimuthPixels());
+    for (const BeamImage::Pixel*& row : rows_) {
+      row = beams.row(azimuth) + first_slope - beams.firstSlope();
+      if (++azimuth == beams.azimuthPixels()) azimuth = 0;
     }
     const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
-    all_.resize(size + 2 * kLanes);
-    passed_.resize(size + 2 * kLanes);
+    // up_to[v] counts the slopes below v.
+    all_up_to_.resize(size + 2 * kLanes + 1);
+    passed_up_to_.resize(size + 2 * kLanes + 1);
     const BeamImage::Pixel limit = view.behind;
     const Lanes behind = {limit, limit, limit, limit};
     for (std::size_t v = 0; v < size; v += 2 * kLanes) {
@@ -104,20 +153,26 @@ class BeamSums {
         add(row + v, behind, all_low, passed_low);
         add(row + v + kLanes, behind, all_high, passed_high);
       }
-      store(all_low, &all_[v]);
-      store(all_high, &all_[v + kLanes]);
-      store(passed_low, &passed_[v]);
-      store(passed_high, &passed_[v + kLanes]);
+      store(all_low, &all_up_to_[v + 1]);
+      store(all_high, &all_up_to_[v + 1 + kLanes]);
+      store(passed_low, &passed_up_to_[v + 1]);
+      store(passed_high, &passed_up_to_[v + 1 + kLanes]);
+    }
+    std::int32_t all = 0, passed = 0;
+    all_up_to_[0] = passed_up_to_[0] = 0;
+    for (std::size_t v = 1; v <= size; ++v) {
+      all_up_to_[v] = all += all_up_to_[v];
+      passed_up_to_[v] = passed += passed_up_to_[v];
     }
   }
 
   bool seesFree(int first_slope, int last_slope, const VisibilityConfig& config) const {
-    int all = 0, passed = 0;
-    const int end = std::min(last_slope, last_slope_) - first_slope_;
-    for (int v = std::max(first_slope, first_slope_) - first_slope_; v <= end; ++v) {
-      all += all_[static_cast<std::size_t>(v)];
-      passed += passed_[static_cast<std::size_t>(v)];
-    }
+    const int begin = std::max(first_slope, first_slope_) - first_slope_;
+    const int end = std::min(last_slope, last_slope_) - first_slope_ + 1;
+    if (begin >= end) return false;
+    const auto from = static_cast<std::size_t>(begin), to = static_cast<std::size_t>(end);
+    const int all = all_up_to_[to] - all_up_to_[from];
+    const int passed = passed_up_to_[to] - passed_up_to_[from];
     return passed >= config.min_beams && passed >= config.min_share * all;
   }
 
@@ -141,8 +196,7 @@ class BeamSums {
   int first_slope_ = 0;
   int last_slope_ = -1;
   std::vector<const BeamImage::Pixel*> rows_;
-  std::vector<BeamImage::Pixel> all_;
-  std::vector<BeamImage::Pixel> passed_;
+  std::vector<BeamImage::Pixel> all_up_to_, passed_up_to_;
 };
 
 Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
@@ -174,80 +228,113 @@ BeamImage::BeamImage(const VisibilityConfig& config)
   // Four pixels of azimuth are as many as the diamond angle's range, so that all quadrants are
   // alike.
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
-  slope_scale_ = static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0));
-  slope_pixels_ = static_cast<int>((kMaxSlope - kMinSlope) * slope_scale_) + 1;
+  scale_ = {static_cast<float>(azimuth_pixels_),
+            static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0))};
+  slope_pixels_ = static_cast<int>(scale_.slopePixel(PixelScale::kMaxSlope)) + 1;
   farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
   first_slope_ = slope_pixels_;
   last_slope_ = -1;
 }
 
-float BeamImage::azimuthPixel(float x, float y) const {
-  // The diamond angle: 0 to 4 around the circle.
-  const float t = y / (std::abs(x) + std::abs(y));
-  const float diamond = x < 0.0F ? 2.0F - t : (t < 0.0F ? 4.0F + t : t);
-  return diamond * 0.25F * static_cast<float>(azimuth_pixels_);
+void BeamImage::findDirections(const PlacedScan& scan) {
+  for (std::vector<std::int32_t>* values : {&azimuths_, &slopes_, &ends_}) {
+    values->resize(scan.size());
+  }
+  first_slope_ = slope_pixels_;
+  last_slope_ = kOutside;
+  const PixelScale scale = scale_;
+  const float sx = scan.sensor.x(), sy = scan.sensor.y(), sz = scan.sensor.z();
+  // Rounding may end at the whole circle.
+  const auto last_azimuth = static_cast<float>(azimuth_pixels_ - 1);
+  const auto slope_end = static_cast<float>(slope_pixels_);
+  // Blocks, and short loops without branches: the compiler takes several points at a time.
+  constexpr std::size_t kBlock = 256;
+  std::array<float, kBlock> distance, azimuth, slope;
+  for (std::size_t begin = 0; begin < scan.size(); begin += kBlock) {
+    const std::size_t size = std::min(kBlock, scan.size() - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+      const float x = scan.x[begin + i] - sx, y = scan.y[begin + i] - sy;
+      distance[i] = std::sqrt(x * x + y * y);
+      azimuth[i] = scale.azimuthPixel(x, y);
+      // NaN straight above the sensor.
+      const float pixel = scale.slopePixel((scan.z[begin + i] - sz) / distance[i]);
+      slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      ends_[begin + i] = limitFor(distance[i]) & ~kMaxCount;
+      // The order of the arguments makes NaN the lower limit.
+      azimuths_[begin + i] =
+          static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
+      slopes_[begin + i] = floorToInt(std::max(-1.0F, std::min(slope[i], slope_end)));
+    }
+    for (std::size_t i = begin; i < begin + size; ++i) {
+      if (slopes_[i] >= slope_pixels_) slopes_[i] = kOutside;
+      if (slopes_[i] < 0) continue;
+      first_slope_ = std::min(first_slope_, slopes_[i]);
+      last_slope_ = std::max(last_slope_, slopes_[i]);
+    }
+  }
 }
 
 void BeamImage::fill(const PlacedScan& scan) {
-  incoming_.clear();
-  std::fill(farthest_.begin(), farthest_.end(), 0);
-  first_slope_ = slope_pixels_;
-  last_slope_ = -1;
-  for (const Eigen::Vector3f& point : scan.points) {
-    const Eigen::Vector3f ray = point - scan.sensor;
-    const float distance = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
-    if (distance < kNearestColumn) continue;
-    const int v = floorToInt(slopePixel(std::clamp(ray.z() / distance, -2.0F, 2.0F)));
-    if (v < 0 || v >= slope_pixels_) continue;
-    const int u = std::min(static_cast<int>(azimuthPixel(ray.x(), ray.y())), azimuth_pixels_ - 1);
-    incoming_.push_back({static_cast<std::int16_t>(u), static_cast<std::int16_t>(v),
-                         limitFor(distance) & ~kMaxCount});
-    first_slope_ = std::min(first_slope_, v);
-    last_slope_ = std::max(last_slope_, v);
-  }
+  findDirections(scan);
   // Most sensors use a small part of the slopes: the image is then small enough for the cache.
-  const auto slopes = static_cast<std::size_t>(std::max(0, last_slope_ - first_slope_ + 1));
-  pixels_.assign(static_cast<std::size_t>(azimuth_pixels_) * slopes + kPadding, kEmpty);
-  for (const Beam& beam : incoming_) {
-    const auto u = static_cast<std::size_t>(beam.azimuth);
-    Pixel& pixel = pixels_[u * slopes + static_cast<std::size_t>(beam.slope - first_slope_)];
-    pixel = std::min(pixel & ~kMaxCount, beam.end) | std::min(countOf(pixel) + 1, kMaxCount);
-    farthest_[u] = std::max(farthest_[u], beam.end | 1);
+  const int slopes = std::max(0, last_slope_ - first_slope_ + 1);
+  const auto azimuths = static_cast<std::size_t>(azimuth_pixels_);
+  pixels_.assign(azimuths * static_cast<std::size_t>(slopes) + kPadding, kEmpty);
+  farthest_.assign(azimuths, 0);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (slopes_[i] == kOutside) continue;
+    const int u = azimuths_[i], v = slopes_[i] - first_slope_;
+    Pixel& pixel = pixels_[static_cast<std::size_t>(u * slopes + v)];
+    pixel = std::min(pixel & ~kMaxCount, ends_[i]) | std::min(countOf(pixel) + 1, kMaxCount);
+    Pixel& farthest = farthest_[static_cast<std::size_t>(u)];
+    farthest = std::max(farthest, ends_[i] | 1);
   }
 }
 
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config) {
+                      const VisibilityConfig& config, BitGrid recycled) {
   const ColumnWindow& window = candidates.window();
   const float res_g = static_cast<float>(matrix.res_g);
   const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
-  BitGrid seen_free(window, 0);
+  BitGrid seen_free = std::move(recycled);
+  seen_free.reset(window, 0);
+  const float margin = 0.5F * res_g + static_cast<float>(config.margin);
+  ColumnViews views;
   BeamSums sums;
-  for (int x = 0; x < window.size; ++x) {
-    const float dx =
-        (static_cast<float>(window.corner.x - scan.anchor.x + x) + 0.5F) * res_g - scan.sensor.x();
-    for (int y = 0; y < window.size; ++y) {
-      if (candidates.at(x, y) == 0) continue;
-      const float dy = (static_cast<float>(window.corner.y - scan.anchor.y + y) + 0.5F) * res_g -
-                       scan.sensor.y();
-      const float distance = std::sqrt(dx * dx + dy * dy);
+  const auto from_sensor = [&](int column, float sensor) {
+    return (static_cast<float>(column) + 0.5F) * res_g - sensor;
+  };
+  const auto judge = [&](int x) {
+    views.view(beams.scale(), from_sensor(window.corner.x - scan.anchor.x + x, scan.sensor.x()),
+               matrix);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const float distance = views.distance(i);
       if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const float bottom = ground.at(x, y) - scan.sensor.z();
       const float unsure = poseError(distance, config);
-      const float margin = static_cast<float>(config.margin) + unsure;
-      const ColumnView view = viewColumn(beams, dx, dy, distance, bottom, matrix, margin);
-      const Bits judged = inImage(candidates.at(x, y), beams, view);
+      const ColumnView view = views.at(i, beams, matrix, margin + unsure);
+      const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
       if (judged == 0 || !anyBeamPassed(beams, view)) continue;
       Bits free = seenFree(judged, beams, view, config, sums);
-      if (unsure > 0.0F) {
+      if (free != 0 && unsure > 0.0F) {
         // The cell may be anywhere around where the pose puts it: all of that must be free.
-        free = seenFree(free, beams,
-                        viewColumn(beams, dx, dy, distance, bottom, matrix, margin, unsure), config,
-                        sums);
+        const ColumnView around = views.at(i, beams, matrix, margin + unsure, unsure);
+        free = seenFree(free, beams, around, config, sums);
       }
-      seen_free.at(x, y) = free;
+      seen_free.at(x, views.y(i)) = free;
     }
+    views.clear();
+  };
+  for (int x = 0; x < window.size; ++x) {
+    for (int y = 0; y < window.size; ++y) {
+      if (candidates.at(x, y) == 0) continue;
+      views.add(y, from_sensor(window.corner.y - scan.anchor.y + y, scan.sensor.y()),
+                ground.at(x, y) - scan.sensor.z());
+      if (views.full()) judge(x);
+    }
+    judge(x);
   }
   return seen_free;
 }

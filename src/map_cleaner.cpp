@@ -42,11 +42,17 @@ void MapCleaner::observe(const ScanView& view) {
   times_.add(view.times);
   StageClock clock(times_);
   dropped_ += view.dropped;
-  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
-                   [&](Tile* tile, std::size_t column, float z) {
-                     tile->lowest[column] = std::min(tile->lowest[column], z);
-                     tile->heights[column] |= height_bins_.bin(z);
-                   });
+  forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+    float lowest = Tile::kNoHeight;
+    Bits heights = 0;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const float z = view.placed.z[i];
+      lowest = std::min(lowest, z);
+      heights |= height_bins_.bin(z);
+    }
+    tile->lowest[column] = std::min(tile->lowest[column], lowest);
+    tile->heights[column] |= heights;
+  });
   clock.lap("coarse_ground");
 }
 
@@ -68,10 +74,9 @@ void MapCleaner::encode(const Scan& scan) {
 void MapCleaner::encode(const ScanView& view) {
   times_.add(view.times);
   StageClock clock(times_);
-  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
-                   [&](Tile* tile, std::size_t column, float z) {
-                     tile->occupied[column] |= encoding_.bit(z, tile->ground[column]);
-                   });
+  forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+    tile->occupied[column] |= encoding_.bits(view.placed, run, tile->ground[column]);
+  });
   clock.lap("binary_encoding");
 }
 
@@ -105,10 +110,15 @@ void MapCleaner::add(const ScanView& view) {
 void MapCleaner::findDynamic(ScanView& view) const {
   StageClock clock(view.times);
   const PlacedScan& scan = view.placed;
-  const MapWindow map = windowAround(scan);
-  view.hit = encodeScan(scan, map.ground, config_.matrix);
+  MapWindow& map = view.map;
+  const ColumnWindow window = regionOfInterest(scan, config_.matrix);
+  map.occupied = map_.extract(window, &Tile::occupied, Bits{0}, std::move(map.occupied));
+  map.ground = map_.extract(window, &Tile::ground, Tile::kNoHeight, std::move(map.ground));
+  map.below_ground =
+      map_.extract(window, &Tile::below_ground, std::uint8_t{0}, std::move(map.below_ground));
+  view.hit = encodeScan(scan, map.ground, config_.matrix, std::move(view.hit));
   clock.lap("binary_encoding");
-  view.free = compareMatrices(map.occupied, view.hit);
+  view.free = compareMatrices(map.occupied, view.hit, std::move(view.free));
   clock.lap("matrix_comparison");
   if (!config_.restoration.enabled) return;
   keepOnly(view.free, cellsInSight(scan, view.hit, map, config_.matrix, config_.restoration));
@@ -120,12 +130,14 @@ void MapCleaner::findDynamic(ScanView& view) const {
 
 void MapCleaner::findFree(ScanView& view) const {
   StageClock clock(view.times);
-  const ColumnWindow window = regionOfInterest(view.placed, config_.matrix);
-  const HeightGrid ground = map_.extract(window, &Tile::ground, Tile::kNoHeight);
-  view.hit = encodeScan(view.placed, ground, config_.matrix);
+  const ColumnWindow window = seenRegion(view.placed, config_.matrix);
+  HeightGrid& ground = view.map.ground;
+  ground = map_.extract(window, &Tile::ground, Tile::kNoHeight, std::move(ground));
+  view.hit = encodeScan(view.placed, ground, config_.matrix, std::move(view.hit));
   clock.lap("binary_encoding");
   // Which cells will be occupied is known only when all scans are added.
-  BitGrid candidates(window, 0);
+  BitGrid& candidates = view.map.occupied;
+  candidates.reset(window, 0);
   forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
     candidates.at(x, y) =
         height_bins_.possibleCells(tile.heights[column], tile.ground[column]) & ~view.hit.at(x, y);
@@ -135,7 +147,7 @@ void MapCleaner::findFree(ScanView& view) const {
   view.beams->fill(view.placed);
   clock.lap("beam_image");
   view.free = cellsSeenFree(*view.beams, candidates, ground, view.placed, config_.matrix,
-                            config_.visibility);
+                            config_.visibility, std::move(view.free));
   clock.lap("beam_visibility");
 }
 
@@ -146,13 +158,13 @@ void MapCleaner::addEvidence(const ScanView& view) {
   // Points beyond the window are in the map, too, though nothing is judged there.
   const ColumnWindow& window = view.hit.window();
   TileCursor<TileMap> tile_of(map_);
-  forEachColumnPoint(view.placed, config_.matrix.res_g, [&](int x, int y, float z) {
-    const ColumnIndex index{view.placed.anchor.x + x, view.placed.anchor.y + y};
-    if (window.contains(index)) return;
+  for (const ColumnRun& run : view.placed.runs) {
+    const ColumnIndex index{view.placed.anchor.x + run.x, view.placed.anchor.y + run.y};
+    if (window.contains(index)) continue;
     Tile& tile = *tile_of(index);
     const auto column = static_cast<std::size_t>(TileMap::indexInTile(index));
-    tile.occupied[column] |= encoding_.bit(z, tile.ground[column]);
-  });
+    tile.occupied[column] |= encoding_.bits(view.placed, run, tile.ground[column]);
+  }
   clock.lap("binary_encoding");
   forEachColumn(map_, window, [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits hit = view.hit.at(x, y);
@@ -189,20 +201,16 @@ std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
 void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) const {
   StageClock clock(view.times);
   classes.assign(view.placed.cloud_size, PointClass::kDropped);
-  auto source = view.placed.source_index.begin();
-  forEachTilePoint(map_, view.placed, config_.matrix.res_g,
-                   [&](const Tile* tile, std::size_t column, float z) {
-                     const bool dynamic = tile && judgement_.isDynamic(*tile, column, z);
-                     classes[*source++] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-                   });
+  const PlacedScan& placed = view.placed;
+  forEachTileRun(map_, placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+    // Most columns have no dynamic cell: nothing of them is removed.
+    const bool judged = tile != nullptr && tile->dynamic[column] != 0;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const bool dynamic = judged && judgement_.isDynamic(*tile, column, placed.z[i]);
+      classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
+    }
+  });
   clock.lap("classifying");
-}
-
-MapWindow MapCleaner::windowAround(const PlacedScan& scan) const {
-  const ColumnWindow window = regionOfInterest(scan, config_.matrix);
-  return {map_.extract(window, &Tile::occupied, Bits{0}),
-          map_.extract(window, &Tile::ground, Tile::kNoHeight),
-          map_.extract(window, &Tile::below_ground, std::uint8_t{0})};
 }
 
 }  // namespace beautymap

@@ -98,11 +98,7 @@ int MapJudgement::groundBit(const Tile& tile, std::size_t column) const {
   return tile.occupied[column] == 0 ? -1 : lowestBitIndex(tile.occupied[column]);
 }
 
-int MapJudgement::groundBin(const Tile& tile, std::size_t column, float z) const {
-  if (usesGroundLayer()) {
-    const int bin = ground_layer_.binOf(z - tile.ground[column] - below_ground_);
-    return bin < ground_layer_.bins() ? bin : -1;
-  }
+int MapJudgement::fineBin(const Tile& tile, std::size_t column, float z) const {
   const int bit = encoding_.bitIndex(z, tile.ground[column]);
   if (bit < 0 || bit != groundBit(tile, column)) return -1;
   const float cell_bottom = tile.ground[column] + static_cast<float>(bit * config_.matrix.res_h);
@@ -111,10 +107,24 @@ int MapJudgement::groundBin(const Tile& tile, std::size_t column, float z) const
 
 void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const {
   const auto bins = static_cast<std::size_t>(map.fineBins());
-  forEachTilePoint(map, scan, config_.matrix.res_g, [&](Tile* tile, std::size_t column, float z) {
-    const int bin = groundBin(*tile, column, z);
-    if (bin >= 0) ++tile->fine_counts[column * bins + static_cast<std::size_t>(bin)];
-  });
+  const auto count = [&](auto bin_of) {
+    forEachTileRun(map, scan, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+      std::uint32_t* counts = &tile->fine_counts[column * bins];
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        const int bin = bin_of(*tile, column, scan.z[i]);
+        if (bin >= 0) ++counts[bin];
+      }
+    });
+  };
+  // Asked once, not for each point.
+  if (usesGroundLayer()) {
+    count([this](const Tile& tile, std::size_t column, float z) {
+      return layerBin(tile, column, z);
+    });
+  } else {
+    count(
+        [this](const Tile& tile, std::size_t column, float z) { return fineBin(tile, column, z); });
+  }
 }
 
 int MapJudgement::groundBins(const Tile& tile, std::size_t column, Bits dynamic) const {

@@ -14,8 +14,9 @@ void combine(BitGrid& into, const BitGrid& other, F f) {
 
 }  // namespace
 
-BitGrid compareMatrices(const BitGrid& map, const BitGrid& scan) {
-  BitGrid dynamic = map;
+BitGrid compareMatrices(const BitGrid& map, const BitGrid& scan, BitGrid recycled) {
+  BitGrid dynamic = std::move(recycled);
+  dynamic = map;  // into the memory it has
   restore(dynamic, scan);
   return dynamic;
 }

@@ -64,13 +64,14 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
 void OnlineMap::addLowest() {
   lowered_.clear();
   TileCursor<TileMap> tile_of(map_);
-  forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
-    const ColumnIndex column{placed_.anchor.x + x, placed_.anchor.y + y};
+  for (const ColumnRun& run : placed_.runs) {
+    const ColumnIndex column{placed_.anchor.x + run.x, placed_.anchor.y + run.y};
     float& lowest = tile_of(column)->lowest[static_cast<std::size_t>(TileMap::indexInTile(column))];
-    if (z >= lowest) return;
+    const float z = *std::min_element(&placed_.z[run.begin], &placed_.z[run.end - 1] + 1);
+    if (z >= lowest) continue;
     if (lowest - z > kNoticeable) lowered_.push_back(column);
     lowest = z;
-  });
+  }
 }
 
 void OnlineMap::updateGround() {
@@ -123,13 +124,12 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
 
 void OnlineMap::addOccupied() {
   const BinaryEncoding encoding(config_.matrix);
-  forEachTilePoint(map_, placed_, config_.matrix.res_g,
-                   [&](Tile* tile, std::size_t column, float z) {
-                     const Bits bit = encoding.bit(z, tile->ground[column]);
-                     if ((bit & ~tile->occupied[column]) == 0) return;
-                     tile->occupied[column] |= bit;
-                     tile->unsettled = true;
-                   });
+  forEachTileRun(map_, placed_, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+    const Bits bits = encoding.bits(placed_, run, tile->ground[column]);
+    if ((bits & ~tile->occupied[column]) == 0) return;
+    tile->occupied[column] |= bits;
+    tile->unsettled = true;
+  });
 }
 
 void OnlineMap::addHitEvidence() {
@@ -225,22 +225,21 @@ void OnlineMap::classify(const Scan& scan) {
   const BitGrid grown = dynamicInScan();
   const ColumnIndex corner = grown.window().corner;
   classes_.assign(scan.cloud.size(), PointClass::kDropped);
-  auto source = placed_.source_index.begin();
-  TileCursor<const TileMap> tile_of(map_);
-  forEachColumnPoint(placed_, config_.matrix.res_g, [&](int x, int y, float z) {
-    const ColumnIndex index{placed_.anchor.x + x, placed_.anchor.y + y};
-    const Tile& tile = *tile_of(index);
-    const auto column = static_cast<std::size_t>(TileMap::indexInTile(index));
-    const int wx = index.x - corner.x, wy = index.y - corner.y;
-    const Bits more = grown.inside(wx, wy) ? grown.at(wx, wy) & ~tile.dynamic[column] : Bits{0};
-    const Bits dynamic = tile.dynamic[column] | more;
-    const bool is_dynamic =
-        dynamic != 0 &&
-        judgement_.isDynamic(
-            tile, column, z, dynamic,
-            more == 0 ? tile.static_bins[column] : judgement_.groundBins(tile, column, dynamic));
-    classes_[*source++] = is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
-  });
+  forEachTileRun(
+      std::as_const(map_), placed_,
+      [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+        const int x = placed_.anchor.x + run.x - corner.x, y = placed_.anchor.y + run.y - corner.y;
+        const Bits more = grown.inside(x, y) ? grown.at(x, y) & ~tile->dynamic[column] : Bits{0};
+        const Bits dynamic = tile->dynamic[column] | more;
+        const int ground_bins =
+            more == 0 ? tile->static_bins[column] : judgement_.groundBins(*tile, column, dynamic);
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+          const bool is_dynamic = dynamic != 0 && judgement_.isDynamic(*tile, column, placed_.z[i],
+                                                                       dynamic, ground_bins);
+          classes_[placed_.source_index[i]] =
+              is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
+        }
+      });
 }
 
 }  // namespace beautymap

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/scan.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -23,37 +26,77 @@ void countDropped(const Eigen::Vector3f& point, float squared_range, float min_s
   }
 }
 
-/// Appends without a branch on whether a point is usable: which ones are is hard to predict.
+// Points at a time: their intermediate results stay in the fastest cache.
+constexpr std::size_t kBlock = 512;
+
+/// Drops the points of a block that are not usable; the block starts at `first` of the scan's cloud
+/// and `used` of the placed points.
+/// @return  how many stay
+std::size_t dropPoints(const Scan& scan, std::size_t first, std::size_t size,
+                       const std::int32_t* usable, const float* squared_range, float min_squared,
+                       std::size_t used, PlacedScan& placed, DroppedPoints& dropped) {
+  std::size_t to = used;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (usable[i] == 0) {
+      countDropped(scan.cloud[first + i].getVector3fMap(), squared_range[i], min_squared, dropped);
+    }
+    placed.x[to] = placed.x[used + i];
+    placed.y[to] = placed.y[used + i];
+    placed.z[to] = placed.z[used + i];
+    placed.source_index[to] = static_cast<std::uint32_t>(first + i);
+    to += static_cast<std::size_t>(usable[i]);  // no branch: which ones are is hard to predict
+  }
+  return to - used;
+}
+
+/// @param move  a point's x, y, z -> where it lies; a branch in it would cost its vectorization
 template <typename Move>
 void movePoints(const Scan& scan, const ScanConfig& config, PlacedScan& placed,
                 DroppedPoints& dropped, Move move) {
   const float min_squared = static_cast<float>(config.min_range * config.min_range);
   const float max_squared = static_cast<float>(config.max_range * config.max_range);
-  const std::size_t size = scan.cloud.size();
-  placed.cloud_size = size;
-  placed.points.resize(size);
-  placed.source_index.resize(size);
-  std::size_t used = 0;
-  // Three coordinates, or four of which the last is 0: then a point is one SSE register.
-  using Moved = decltype(move(scan.cloud[0]));
-  Moved sensor = Moved::Zero();
-  sensor.template head<3>() = placed.sensor;
-  for (std::size_t i = 0; i < size; ++i) {
-    const pcl::PointXYZ& p = scan.cloud[i];
-    const Moved moved = move(p);
-    const float squared = (moved - sensor).squaredNorm();
-    placed.points[used] = moved.template head<3>();
-    placed.source_index[used] = static_cast<std::uint32_t>(i);
-    // False for NaN, too. Without short circuits: each would be a branch.
-    const int zero = static_cast<int>(p.x == 0.0F) & static_cast<int>(p.y == 0.0F) &
-                     static_cast<int>(p.z == 0.0F);
-    const int usable = static_cast<int>(squared >= min_squared) &
-                       static_cast<int>(squared <= max_squared) & static_cast<int>(squared > 0.0F) &
-                       (1 - zero);
-    used += static_cast<std::size_t>(usable);
-    if (usable == 0) countDropped(p.getVector3fMap(), squared, min_squared, dropped);
+  const float sx = placed.sensor.x(), sy = placed.sensor.y(), sz = placed.sensor.z();
+  const std::size_t cloud_size = scan.cloud.size();
+  placed.cloud_size = cloud_size;
+  for (std::vector<float>* coordinate : {&placed.x, &placed.y, &placed.z}) {
+    coordinate->resize(cloud_size);
   }
-  placed.points.resize(used);
+  placed.source_index.resize(cloud_size);
+  std::array<float, kBlock> squared_range;
+  std::array<std::int32_t, kBlock> usable;
+  std::size_t used = 0;
+  for (std::size_t first = 0; first < cloud_size; first += kBlock) {
+    const std::size_t size = std::min(kBlock, cloud_size - first);
+    const pcl::PointXYZ* __restrict p = &scan.cloud[first];
+    float* __restrict x = &placed.x[used];
+    float* __restrict y = &placed.y[used];
+    float* __restrict z = &placed.z[used];
+    std::int32_t usable_count = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      move(p[i].x, p[i].y, p[i].z, x[i], y[i], z[i]);
+      const float dx = x[i] - sx, dy = y[i] - sy, dz = z[i] - sz;
+      const float squared = dx * dx + dy * dy + dz * dz;
+      squared_range[i] = squared;
+      // False for NaN, too. Without short circuits: each would be a branch.
+      const int zero = static_cast<int>(p[i].x == 0.0F) & static_cast<int>(p[i].y == 0.0F) &
+                       static_cast<int>(p[i].z == 0.0F);
+      usable[i] = static_cast<int>(squared >= min_squared) &
+                  static_cast<int>(squared <= max_squared) & static_cast<int>(squared > 0.0F) &
+                  (1 - zero);
+      usable_count += usable[i];
+    }
+    if (static_cast<std::size_t>(usable_count) == size) {
+      std::iota(&placed.source_index[used], &placed.source_index[used] + size,
+                static_cast<std::uint32_t>(first));
+      used += size;
+    } else {
+      used += dropPoints(scan, first, size, usable.data(), squared_range.data(), min_squared, used,
+                         placed, dropped);
+    }
+  }
+  for (std::vector<float>* coordinate : {&placed.x, &placed.y, &placed.z}) {
+    coordinate->resize(used);
+  }
   placed.source_index.resize(used);
 }
 
@@ -81,23 +124,57 @@ PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const Scan
   if (scan.T_map_cloud.linear().isIdentity(0.0)) {
     // A registered cloud may hold large coordinates: what is large in float is subtracted in
     // double.
-    const double x = shift.x(), y = shift.y(), z = shift.z();
-    movePoints(scan, config, placed, dropped, [&](const pcl::PointXYZ& p) {
-      return Eigen::Vector3f(static_cast<float>(static_cast<double>(p.x) + x),
-                             static_cast<float>(static_cast<double>(p.y) + y),
-                             static_cast<float>(static_cast<double>(p.z) + z));
-    });
+    const double tx = shift.x(), ty = shift.y(), tz = shift.z();
+    movePoints(scan, config, placed, dropped,
+               [=](float px, float py, float pz, float& x, float& y, float& z) {
+                 x = static_cast<float>(static_cast<double>(px) + tx);
+                 y = static_cast<float>(static_cast<double>(py) + ty);
+                 z = static_cast<float>(static_cast<double>(pz) + tz);
+               });
   } else {
-    Eigen::Matrix4f transform = Eigen::Matrix4f::Zero();
-    transform.topLeftCorner<3, 3>() = scan.T_map_cloud.linear().cast<float>();
-    transform.topRightCorner<3, 1>() = shift.cast<float>();
-    const Eigen::Vector4f x = transform.col(0), y = transform.col(1), z = transform.col(2),
-                          t = transform.col(3);
-    movePoints(scan, config, placed, dropped, [&](const pcl::PointXYZ& p) {
-      return Eigen::Vector4f(x * p.x + y * p.y + z * p.z + t);
-    });
+    const Eigen::Matrix3f R = scan.T_map_cloud.linear().cast<float>();
+    const Eigen::Vector3f t = shift.cast<float>();
+    // Copies that no store can change.
+    const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), tx = t.x();
+    const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2), ty = t.y();
+    const float zx = R(2, 0), zy = R(2, 1), zz = R(2, 2), tz = t.z();
+    movePoints(scan, config, placed, dropped,
+               [=](float px, float py, float pz, float& x, float& y, float& z) {
+                 x = xx * px + xy * py + xz * pz + tx;
+                 y = yx * px + yy * py + yz * pz + ty;
+                 z = zx * px + zy * py + zz * pz + tz;
+               });
   }
+  findRuns(placed, res_g);
   return placed;
+}
+
+void findRuns(PlacedScan& placed, double res_g) {
+  const float columns_per_metre = static_cast<float>(1.0 / res_g);
+  std::array<std::int32_t, kBlock> x, y, changed;
+  std::array<std::uint32_t, kBlock> begins;
+  placed.runs.clear();
+  for (std::size_t first = 0; first < placed.size(); first += kBlock) {
+    const std::size_t size = std::min(kBlock, placed.size() - first);
+    for (std::size_t i = 0; i < size; ++i) {
+      x[i] = floorToInt(placed.x[first + i] * columns_per_metre);
+      y[i] = floorToInt(placed.y[first + i] * columns_per_metre);
+    }
+    for (std::size_t i = 1; i < size; ++i) {
+      changed[i] = static_cast<std::int32_t>(((x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1])) != 0);
+    }
+    std::size_t count = 1;
+    begins[0] = 0;
+    for (std::size_t i = 1; i < size; ++i) {
+      begins[count] = static_cast<std::uint32_t>(i);
+      count += static_cast<std::size_t>(changed[i]);  // no branch: runs end anywhere
+    }
+    for (std::size_t run = 0; run < count; ++run) {
+      const std::size_t begin = begins[run], end = run + 1 < count ? begins[run + 1] : size;
+      placed.runs.push_back({x[begin], y[begin], static_cast<std::uint32_t>(first + begin),
+                             static_cast<std::uint32_t>(first + end)});
+    }
+  }
 }
 
 }  // namespace beautymap

@@ -23,12 +23,12 @@ std::size_t sampleOf(std::size_t n, std::size_t stretch) {
 }  // namespace
 
 float steepestSlope(const PlacedScan& scan, double share) {
-  const std::size_t stretch = share < 1.0 ? 1 + scan.points.size() / kSlopeSamples : 1;
+  const std::size_t stretch = share < 1.0 ? 1 + scan.size() / kSlopeSamples : 1;
   std::vector<float> slopes;
-  slopes.reserve(scan.points.size() / stretch + 1);
-  for (std::size_t n = 0; n * stretch < scan.points.size(); ++n) {
-    const std::size_t sample = std::min(sampleOf(n, stretch), scan.points.size() - 1);
-    const Eigen::Vector3f ray = scan.points[sample] - scan.sensor;
+  slopes.reserve(scan.size() / stretch + 1);
+  for (std::size_t n = 0; n * stretch < scan.size(); ++n) {
+    const std::size_t sample = std::min(sampleOf(n, stretch), scan.size() - 1);
+    const Eigen::Vector3f ray = scan.point(sample) - scan.sensor;
     const float distance = ray.head<2>().norm();
     if (distance > 0.0F) slopes.push_back(ray.z() / distance);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,6 +13,30 @@
 #include "beautymap/scan.h"
 
 namespace beautymap {
+
+/// Where directions lie in a BeamImage. A small value, to be copied before a loop over many of
+/// them: the compiler then need not expect that the loop's results change it.
+struct PixelScale {
+  static constexpr float kMinSlope = -1.5F;
+  static constexpr float kMaxSlope = 1.5F;
+
+  float pixels_per_turn;
+  float pixels_per_slope;
+
+  /// Azimuth of a direction in pixels. Not an angle but a monotonic function of it without
+  /// trigonometry.
+  float azimuthPixel(float x, float y) const {
+    // The diamond angle: 0 to 4 around the circle.
+    const float t = y / (std::abs(x) + std::abs(y));
+    // Chosen constants, not chosen expressions: that is vectorized.
+    const float right = t < 0.0F ? 4.0F : 0.0F;
+    const float turn = x < 0.0F ? 2.0F : right;
+    const float sign = x < 0.0F ? -1.0F : 1.0F;
+    const float diamond = turn + sign * t;
+    return diamond * 0.25F * pixels_per_turn;
+  }
+  float slopePixel(float slope) const { return (slope - kMinSlope) * pixels_per_slope; }
+};
 
 /// The beams of one scan by direction: how many returned from each pixel of azimuth and slope
 /// (height over horizontal distance), and the nearest return. Made from the points alone;
@@ -35,12 +60,7 @@ class BeamImage {
   /// Replaces the contents by the beams of a scan.
   void fill(const PlacedScan& scan);
 
-  /// Azimuth of a direction in pixels. Not an angle but a monotonic function of it without
-  /// trigonometry.
-  float azimuthPixel(float x, float y) const;
-  float slopePixel(float slope) const { return (slope - kMinSlope) * slope_scale_; }
-  /// Its inverse.
-  float slopeAt(float pixel) const { return pixel / slope_scale_ + kMinSlope; }
+  PixelScale scale() const { return scale_; }
   int azimuthPixels() const { return azimuth_pixels_; }
   int slopePixels() const { return slope_pixels_; }
 
@@ -61,32 +81,30 @@ class BeamImage {
   static constexpr Pixel kMaxCount = (1 << kCountBits) - 1;
   static constexpr float kFarthest = 8000.0F;  // [m]
   static constexpr Pixel kEmpty = 0x7FFFFF00;  // farther than any beam, and none
-  static constexpr float kMinSlope = -1.5F;
-  static constexpr float kMaxSlope = 1.5F;
 
   int azimuth_pixels_;
   int slope_pixels_;
-  float slope_scale_;
+  PixelScale scale_;
   int first_slope_;
   int last_slope_;
   std::vector<Pixel> pixels_;
   std::vector<Pixel> farthest_;
 
-  /// A beam on its way into the image.
-  struct Beam {
-    std::int16_t azimuth;
-    std::int16_t slope;
-    Pixel end;
-  };
-  std::vector<Beam> incoming_;
+  /// Fills the three arrays below and the range of slopes.
+  void findDirections(const PlacedScan& scan);
+
+  // Of each point of the scan, on its way into the image.
+  static constexpr std::int32_t kOutside = -1;  ///< too near or too steep
+  std::vector<std::int32_t> azimuths_, slopes_, ends_;
 };
 
 /// The candidates that the scan saw free: beams went through the cell's angular footprint, and
 /// nearly all of those in it ended behind the cell. With a stated error of the pose the same must
 /// hold for the cell with that margin around it, so that drift does not wear down walls: a margin
 /// can only make fewer cells seen free.
+/// @param recycled  an earlier result whose memory is used again
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config);
+                      const VisibilityConfig& config, BitGrid recycled = {});
 
 }  // namespace beautymap

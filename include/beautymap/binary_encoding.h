@@ -27,6 +27,12 @@ class BinaryEncoding {
     const int k = bitIndex(z, ground);
     return k < 0 ? Bits{0} : Bits{1} << k;
   }
+  /// The bits of all points of a run.
+  Bits bits(const PlacedScan& scan, const ColumnRun& run, float ground) const {
+    Bits column = 0;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) column |= bit(scan.z[i], ground);
+    return column;
+  }
 
  private:
   float bits_per_metre_;
@@ -65,22 +71,16 @@ class HeightBins {
   int n_bit_;
 };
 
-/// Calls f(x, y, z) for each point of a scan: its column relative to the scan's anchor, its height
-/// [m].
-template <typename F>
-void forEachColumnPoint(const PlacedScan& scan, double res_g, F f) {
-  const float columns_per_metre = static_cast<float>(1.0 / res_g);
-  for (const Eigen::Vector3f& p : scan.points) {
-    f(floorToInt(p.x() * columns_per_metre), floorToInt(p.y() * columns_per_metre), p.z());
-  }
-}
-
 /// The region of interest of a scan: the columns around its sensor in which it is compared with the
 /// map.
 ColumnWindow regionOfInterest(const PlacedScan& scan, const MatrixConfig& config);
 
+/// The part of it that the scan's points reach: beyond, nothing was hit or seen free.
+ColumnWindow seenRegion(const PlacedScan& scan, const MatrixConfig& config);
+
 /// The scan's matrix M_scan in a window of the map, against the map's ground heights.
-BitGrid encodeScan(const PlacedScan& scan, const HeightGrid& map_ground,
-                   const MatrixConfig& config);
+/// @param recycled  an earlier result whose memory is used again
+BitGrid encodeScan(const PlacedScan& scan, const HeightGrid& map_ground, const MatrixConfig& config,
+                   BitGrid recycled = {});
 
 }  // namespace beautymap

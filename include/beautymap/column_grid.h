@@ -42,6 +42,12 @@ class ColumnGrid {
   ColumnGrid(ColumnWindow window, T value)
       : window_(window), values_(static_cast<std::size_t>(window.size) * window.size, value) {}
 
+  /// Begins anew with the memory it has.
+  void reset(ColumnWindow window, T value) {
+    window_ = window;
+    values_.assign(static_cast<std::size_t>(window.size) * window.size, value);
+  }
+
   const ColumnWindow& window() const { return window_; }
   int size() const { return window_.size; }
 

@@ -27,7 +27,8 @@ enum class PointClass : std::uint8_t {
 struct ScanView {
   PlacedScan placed;
   DroppedPoints dropped;
-  BitGrid hit;  ///< cells around the sensor that the scan hit
+  MapWindow map;  ///< the map around the sensor; evidence has possible cells for occupied ones
+  BitGrid hit;    ///< cells around the sensor that the scan hit
   /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
   BitGrid free;
   StageTimes times;
@@ -87,7 +88,6 @@ class MapCleaner {
   double zOrigin() const { return z_origin_.value_or(0.0); }
 
  private:
-  MapWindow windowAround(const PlacedScan& scan) const;
   /// The published judgement of one scan: every candidate it leaves is dynamic.
   void findDynamic(ScanView& view) const;
   /// What one scan saw, for a judgement over all scans.

@@ -51,7 +51,14 @@ class MapJudgement {
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
   /// The bin of a height in the column's histogram of ground heights; -1 outside.
-  int groundBin(const Tile& tile, std::size_t column, float z) const;
+  int groundBin(const Tile& tile, std::size_t column, float z) const {
+    return usesGroundLayer() ? layerBin(tile, column, z) : fineBin(tile, column, z);
+  }
+  int layerBin(const Tile& tile, std::size_t column, float z) const {
+    const int bin = ground_layer_.binOf(z - tile.ground[column] - below_ground_);
+    return bin < ground_layer_.bins() ? bin : -1;
+  }
+  int fineBin(const Tile& tile, std::size_t column, float z) const;
 
   Config config_;
   BinaryEncoding encoding_;

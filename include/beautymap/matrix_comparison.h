@@ -7,7 +7,7 @@
 namespace beautymap {
 
 /// Equation M_dyn = M_map AND NOT M_scan: cells of the map in which the scan has no point.
-BitGrid compareMatrices(const BitGrid& map, const BitGrid& scan);
+BitGrid compareMatrices(const BitGrid& map, const BitGrid& scan, BitGrid recycled = {});
 
 /// Takes the lowest occupied cell of each map column, the ground cell, out of the candidates: it is
 /// left to the fine ground segmentation (static restoration b).

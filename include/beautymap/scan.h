@@ -39,15 +39,26 @@ struct DroppedPoints {
   }
 };
 
+/// Consecutive points of a placed scan that lie in the same column.
+struct ColumnRun {
+  std::int32_t x, y;         ///< column relative to the scan's anchor
+  std::uint32_t begin, end;  ///< of its points
+};
+
 /// A scan's usable points, relative to a map column near the sensor, so that float32 keeps its
-/// millimetres wherever in the world the map lies.
+/// millimetres wherever in the world the map lies. One array per coordinate, and the columns found
+/// once for runs of points: what a pass does with a column it does once per run.
 struct PlacedScan {
   ColumnIndex
       anchor;  ///< its corner is the origin of x and y below; z counts from the map's z origin
   Eigen::Vector3f sensor;                   ///< [m]
-  std::vector<Eigen::Vector3f> points;      ///< [m]
+  std::vector<float> x, y, z;               ///< of the points [m]
   std::vector<std::uint32_t> source_index;  ///< of each point in the scan's cloud
+  std::vector<ColumnRun> runs;              ///< all points, in order
   std::size_t cloud_size = 0;               ///< points of the scan's cloud, usable or not
+
+  std::size_t size() const { return z.size(); }
+  Eigen::Vector3f point(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
 /// The column that holds a position of the map frame [m].
@@ -59,5 +70,8 @@ ColumnIndex columnOf(const Eigen::Vector3d& position_in_map, double res_g);
 /// @throws std::invalid_argument when the pose is not finite or beyond the range of column indices.
 PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const ScanConfig& config,
                      DroppedPoints& dropped, PlacedScan recycled = {});
+
+/// Finds the runs of a placed scan's points.
+void findRuns(PlacedScan& placed, double res_g);
 
 }  // namespace beautymap

@@ -76,9 +76,10 @@ class TileMap {
   }
 
   /// The values of one quantity in a window; `absent` where no tile is.
+  /// @param recycled  an earlier result whose memory is used again
   template <typename T>
   ColumnGrid<T> extract(ColumnWindow window, std::array<T, Tile::kColumns> Tile::*quantity,
-                        T absent) const;
+                        T absent, ColumnGrid<T> recycled = {}) const;
 
   /// ORs a window of bits into one quantity of the tiles that exist.
   void merge(const BitGrid& grid, std::array<Bits, Tile::kColumns> Tile::*quantity);
@@ -139,15 +140,15 @@ class TileCursor {
   bool valid_ = false;
 };
 
-/// Calls f(tile, column in tile, z) for each point of a scan; tile is nullptr where a const map has
-/// none.
+/// Calls f(tile, column in tile, run) for each run of a scan's points; tile is nullptr where a
+/// const map has none.
 template <typename Map, typename F>
-void forEachTilePoint(Map& map, const PlacedScan& scan, double res_g, F f) {
+void forEachTileRun(Map& map, const PlacedScan& scan, F f) {
   TileCursor<Map> tile_of(map);
-  forEachColumnPoint(scan, res_g, [&](int x, int y, float z) {
-    const ColumnIndex column{scan.anchor.x + x, scan.anchor.y + y};
-    f(tile_of(column), static_cast<std::size_t>(TileMap::indexInTile(column)), z);
-  });
+  for (const ColumnRun& run : scan.runs) {
+    const ColumnIndex column{scan.anchor.x + run.x, scan.anchor.y + run.y};
+    f(tile_of(column), static_cast<std::size_t>(TileMap::indexInTile(column)), run);
+  }
 }
 
 /// Calls f(x, y, tile, column in tile) for each column of a window that lies in an existing tile; x
@@ -174,8 +175,9 @@ void forEachColumn(Map& map, ColumnWindow window, F f) {
 
 template <typename T>
 ColumnGrid<T> TileMap::extract(ColumnWindow window, std::array<T, Tile::kColumns> Tile::*quantity,
-                               T absent) const {
-  ColumnGrid<T> grid(window, absent);
+                               T absent, ColumnGrid<T> recycled) const {
+  ColumnGrid<T> grid = std::move(recycled);
+  grid.reset(window, absent);
   forEachColumn(*this, window, [&](int x, int y, const Tile& tile, std::size_t column) {
     grid.at(x, y) = (tile.*quantity)[column];
   });

@@ -71,32 +71,32 @@ std::vector<CopyRun> recordRuns(const pcl::PCLPointCloud2& from, const pcl::PCLP
 std::size_t PointStore::add(const PlacedScan& placed, const pcl::PCLPointCloud2& cloud_in_map) {
   if (layout_.fields.empty()) layout_ = layoutOf(cloud_in_map);
   const std::vector<CopyRun> runs = recordRuns(cloud_in_map, layout_);
-  const float columns_per_metre = static_cast<float>(1.0 / res_g_);
   const std::size_t before = size_;
   ColumnIndex last{};
   TilePoints* tile = nullptr;
-  for (std::size_t i = 0; i < placed.points.size(); ++i) {
-    const Eigen::Vector3f& p = placed.points[i];
-    const ColumnIndex column{placed.anchor.x + floorToInt(p.x() * columns_per_metre),
-                             placed.anchor.y + floorToInt(p.y() * columns_per_metre)};
+  for (const ColumnRun& run : placed.runs) {
+    const ColumnIndex column{placed.anchor.x + run.x, placed.anchor.y + run.y};
     const ColumnIndex index = TileMap::tileOf(column);
     if (tile == nullptr || index != last) {
       tile = &tileAt(index);
       last = index;
     }
-    const Eigen::Vector3d position(placed.anchor.x * res_g_ + static_cast<double>(p.x()),
-                                   placed.anchor.y * res_g_ + static_cast<double>(p.y()),
-                                   static_cast<double>(p.z()));
-    if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(position, voxel_m_))) continue;
-    const std::size_t at = tile->records.size();
-    tile->records.resize(at + layout_.point_step);
-    copyRuns(runs,
-             cloud_in_map.data.data() +
-                 static_cast<std::size_t>(placed.source_index[i]) * cloud_in_map.point_step,
-             tile->records.data() + at);
-    tile->column.push_back(static_cast<std::uint16_t>(TileMap::indexInTile(column)));
-    tile->z.push_back(p.z());
-    ++size_;
+    const auto in_tile = static_cast<std::uint16_t>(TileMap::indexInTile(column));
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const Eigen::Vector3d position(placed.anchor.x * res_g_ + static_cast<double>(placed.x[i]),
+                                     placed.anchor.y * res_g_ + static_cast<double>(placed.y[i]),
+                                     static_cast<double>(placed.z[i]));
+      if (voxel_m_ > 0.0 && !tile->voxels.insert(voxelKey(position, voxel_m_))) continue;
+      const std::size_t at = tile->records.size();
+      tile->records.resize(at + layout_.point_step);
+      copyRuns(runs,
+               cloud_in_map.data.data() +
+                   static_cast<std::size_t>(placed.source_index[i]) * cloud_in_map.point_step,
+               tile->records.data() + at);
+      tile->column.push_back(in_tile);
+      tile->z.push_back(placed.z[i]);
+      ++size_;
+    }
   }
   return size_ - before;
 }

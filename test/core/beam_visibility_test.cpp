@@ -34,8 +34,9 @@ TEST(BeamImage, AzimuthGrowsAroundTheCircle) {
     for (int i = 0; i < 100000; ++i) {
       const double angle = 2.0 * kPi * i / 100000;
       const double radius = 0.5 + i % 7 * 20.0;
-      const float azimuth = beams.azimuthPixel(static_cast<float>(radius * std::cos(angle)),
-                                               static_cast<float>(radius * std::sin(angle)));
+      const float azimuth =
+          beams.scale().azimuthPixel(static_cast<float>(radius * std::cos(angle)),
+                                     static_cast<float>(radius * std::sin(angle)));
       ASSERT_GE(azimuth, 0.0F);
       ASSERT_LE(azimuth, static_cast<float>(beams.azimuthPixels()));
       ASSERT_GE(azimuth, last) << "at " << angle;
@@ -47,11 +48,11 @@ TEST(BeamImage, AzimuthGrowsAroundTheCircle) {
 TEST(BeamImage, TheQuartersOfTheCircleAreAlike) {
   const BeamImage beams((VisibilityConfig()));
   const float quarter = 0.25F * static_cast<float>(beams.azimuthPixels());
-  EXPECT_EQ(beams.azimuthPixel(3.0F, 0.0F), 0.0F);
-  EXPECT_EQ(beams.azimuthPixel(0.0F, 3.0F), quarter);
-  EXPECT_EQ(beams.azimuthPixel(-3.0F, 0.0F), 2.0F * quarter);
-  EXPECT_EQ(beams.azimuthPixel(0.0F, -3.0F), 3.0F * quarter);
-  EXPECT_EQ(beams.azimuthPixel(2.0F, 2.0F), 0.5F * quarter);
+  EXPECT_EQ(beams.scale().azimuthPixel(3.0F, 0.0F), 0.0F);
+  EXPECT_EQ(beams.scale().azimuthPixel(0.0F, 3.0F), quarter);
+  EXPECT_EQ(beams.scale().azimuthPixel(-3.0F, 0.0F), 2.0F * quarter);
+  EXPECT_EQ(beams.scale().azimuthPixel(0.0F, -3.0F), 3.0F * quarter);
+  EXPECT_EQ(beams.scale().azimuthPixel(2.0F, 2.0F), 0.5F * quarter);
 }
 
 TEST(BeamImage, ADirectionJustBelowTheFirstLiesInAPixel) {
@@ -107,7 +108,7 @@ TEST(BeamImage, APixelHoldsItsBeamsAndTheNearestReturn) {
   const std::vector<Eigen::Vector3d> points{
       {8, 0.01, 0}, {4, 0.005, 0}, {16, 0.02, 0}, {0.3, 0, 0}};
   beams.fill(test::placedScan({0, 0}, {0, 0, 0}, points));
-  const int v = floorToInt(beams.slopePixel(0.0F));
+  const int v = floorToInt(beams.scale().slopePixel(0.0F));
   const BeamImage::Pixel pixel = beams.row(0)[v - beams.firstSlope()];
   EXPECT_EQ(BeamImage::countOf(pixel), 3);
   EXPECT_GT(pixel, BeamImage::limitFor(3.998F));

@@ -127,7 +127,8 @@ TEST(BinaryEncoding, AScanSetsExactlyTheBitsOfItsPoints) {
       if (k >= 0) expected[{x, y}] |= Bits{1} << k;
     }
     const Eigen::Vector3d sensor(0.1, 0.1, 0.0);
-    const BitGrid grid = encodeScan(test::placedScan(anchor, sensor, points), ground, config);
+    const BitGrid grid =
+        encodeScan(test::placedScan(anchor, sensor, points, config.res_g), ground, config);
     ASSERT_EQ(grid.size(), window.size);
     for (int x = 0; x < window.size; ++x) {
       for (int y = 0; y < window.size; ++y) {

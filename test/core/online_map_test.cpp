@@ -64,13 +64,15 @@ Classes classesOf(OnlineMap& map, const Scan& scan) {
   const PlacedScan placed =
       placeScan(scan, map.zOrigin(), map.config().matrix.res_g, map.config().scan, dropped);
   Classes classes(scan.cloud.size(), PointClass::kDropped);
-  auto source = placed.source_index.begin();
-  forEachTilePoint(std::as_const(map.map()), placed, map.config().matrix.res_g,
-                   [&](const Tile* tile, std::size_t column, float z) {
-                     classes[*source++] = tile != nullptr && map.isDynamic(*tile, column, z)
-                                              ? PointClass::kDynamic
-                                              : PointClass::kStatic;
-                   });
+  forEachTileRun(std::as_const(map.map()), placed,
+                 [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+                   for (std::uint32_t i = run.begin; i < run.end; ++i) {
+                     classes[placed.source_index[i]] =
+                         tile != nullptr && map.isDynamic(*tile, column, placed.z[i])
+                             ? PointClass::kDynamic
+                             : PointClass::kStatic;
+                   }
+                 });
   return classes;
 }
 

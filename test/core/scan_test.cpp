@@ -59,13 +59,13 @@ TEST(Scan, PointsKeepTheirMillimetresAnywhereInTheWorld) {
       const double z_origin = place.z() + random.uniform(-5.0, 5.0);
       DroppedPoints dropped;
       const PlacedScan placed = placeScan(scan, z_origin, res_g, ScanConfig(), dropped);
-      ASSERT_EQ(placed.points.size(), scan.cloud.size());
+      ASSERT_EQ(placed.size(), scan.cloud.size());
       EXPECT_EQ(placed.anchor, columnOf(scan.sensor_in_map, res_g));
-      for (std::size_t i = 0; i < placed.points.size(); ++i) {
+      for (std::size_t i = 0; i < placed.size(); ++i) {
         const Eigen::Vector3d expected =
             movedInDouble(scan, placed.source_index[i], placed.anchor, res_g, z_origin);
         // Some ten roundings of numbers of up to 120 m in float, 4e-6 m each.
-        ASSERT_LT((placed.points[i].cast<double>() - expected).norm(), 1e-4);
+        ASSERT_LT((placed.point(i).cast<double>() - expected).norm(), 1e-4);
       }
     }
   }
@@ -94,9 +94,9 @@ TEST(Scan, ARegisteredCloudWithLargeCoordinatesLosesNothingMore) {
       test::registeredScan({{500000.03125, 5800000.5, 2.0}}, {500000.25, 5800001.0, 1.0});
   DroppedPoints dropped;
   const PlacedScan placed = placeScan(scan, 1.0, 0.5, ScanConfig(), dropped);
-  ASSERT_EQ(placed.points.size(), 1U);
+  ASSERT_EQ(placed.size(), 1U);
   EXPECT_EQ(placed.anchor, (ColumnIndex{1000000, 11600002}));
-  EXPECT_EQ(placed.points[0], Eigen::Vector3f(0.03125F, -0.5F, 1.0F));
+  EXPECT_EQ(placed.point(0), Eigen::Vector3f(0.03125F, -0.5F, 1.0F));
 }
 
 TEST(Scan, UnusablePointsAreDroppedAndCountedByReason) {
@@ -117,14 +117,75 @@ TEST(Scan, UnusablePointsAreDroppedAndCountedByReason) {
   EXPECT_EQ(dropped.zero, 2U);
   EXPECT_EQ(dropped.too_near, 1U);
   EXPECT_EQ(dropped.too_far, 2U);
-  EXPECT_EQ(dropped.total() + placed.points.size(), points.size());
+  EXPECT_EQ(dropped.total() + placed.size(), points.size());
   EXPECT_EQ(placed.source_index, (std::vector<std::uint32_t>{0, 9, 10, 12}));
+}
+
+TEST(Scan, LargeCloudsKeepTheirUsablePointsInOrder) {
+  for (const double unusable : {0.0, 0.001, 0.3, 1.0}) {
+    Random random(7);
+    Scan scan;
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+      if (random.chance(unusable)) {
+        scan.cloud.push_back(random.chance(0.5) ? pcl::PointXYZ(kNan, 0.0F, 1.0F)
+                                                : pcl::PointXYZ(0.0F, 0.0F, 0.0F));
+      } else {
+        scan.cloud.push_back(pcl::PointXYZ(static_cast<float>(i + 1), 2.0F, -1.0F));
+        expected.push_back(i);
+      }
+    }
+    ScanConfig config;
+    config.max_range = 1e4;
+    DroppedPoints dropped;
+    const PlacedScan placed = placeScan(scan, 0.0, 1.0, config, dropped);
+    EXPECT_EQ(placed.source_index, expected);
+    ASSERT_EQ(placed.size(), expected.size());
+    EXPECT_EQ(placed.cloud_size, scan.cloud.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_EQ(placed.point(i), Eigen::Vector3f(static_cast<float>(expected[i] + 1), 2.0F, -1.0F));
+    }
+    EXPECT_EQ(dropped.total(), scan.cloud.size() - expected.size());
+  }
+}
+
+TEST(Scan, RunsAreTheConsecutivePointsOfAColumn) {
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    Random random(seed);
+    PlacedScan placed;
+    const double res_g = random.pick<double>({0.25, 0.5, 2.0});
+    const double step = random.pick<double>({0.01, 0.2, 3.0});
+    double x = 0.0, y = 0.0;
+    for (int i = random.integer(0, 2000); i > 0; --i) {
+      x += random.uniform(-step, step);
+      y += random.uniform(-step, step);
+      placed.x.push_back(static_cast<float>(x));
+      placed.y.push_back(static_cast<float>(y));
+      placed.z.push_back(0.0F);
+    }
+    placed.runs = {{1, 2, 3, 4}};  // of a scan before
+    findRuns(placed, res_g);
+    std::uint32_t next = 0;
+    for (const ColumnRun& run : placed.runs) {
+      ASSERT_EQ(run.begin, next);
+      ASSERT_LT(run.begin, run.end);
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        ASSERT_EQ(run.x, static_cast<int>(std::floor(placed.x[i] / static_cast<float>(res_g))));
+        ASSERT_EQ(run.y, static_cast<int>(std::floor(placed.y[i] / static_cast<float>(res_g))));
+      }
+      next = run.end;
+    }
+    EXPECT_EQ(next, placed.size());
+    if (step < 0.1) {
+      EXPECT_LT(placed.runs.size(), placed.size() / 4 + 8);
+    }
+  }
 }
 
 TEST(Scan, ARegisteredPointAtTheSensorIsNoReturn) {
   const Scan scan = test::registeredScan({{4.0, 5.0, 1.0}, {4.0, 5.0, 0.0}}, {4.0, 5.0, 1.0});
   DroppedPoints dropped;
-  EXPECT_EQ(placeScan(scan, 0.0, 1.0, ScanConfig(), dropped).points.size(), 1U);
+  EXPECT_EQ(placeScan(scan, 0.0, 1.0, ScanConfig(), dropped).size(), 1U);
   EXPECT_EQ(dropped.zero, 1U);
 }
 
@@ -138,14 +199,14 @@ TEST(Scan, HugeValuesAreTooFarInAnyPose) {
       scan.cloud.push_back(pcl::PointXYZ(0.0F, huge, 1.0F));
     }
     DroppedPoints dropped;
-    EXPECT_TRUE(placeScan(scan, 0.0, 1.0, ScanConfig(), dropped).points.empty());
+    EXPECT_TRUE(placeScan(scan, 0.0, 1.0, ScanConfig(), dropped).size() == 0);
     EXPECT_EQ(dropped.too_far, scan.cloud.size());
   }
 }
 
 TEST(Scan, AnEmptyCloudHasNoPoints) {
   DroppedPoints dropped;
-  EXPECT_TRUE(placeScan(Scan(), 0.0, 1.0, ScanConfig(), dropped).points.empty());
+  EXPECT_TRUE(placeScan(Scan(), 0.0, 1.0, ScanConfig(), dropped).size() == 0);
   EXPECT_EQ(dropped.total(), 0U);
 }
 

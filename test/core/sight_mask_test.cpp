@@ -21,8 +21,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 std::vector<double> sortedSlopes(const PlacedScan& scan) {
   std::vector<double> slopes;
-  for (const Eigen::Vector3f& point : scan.points) {
-    const Eigen::Vector3d ray = (point - scan.sensor).cast<double>();
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3d ray = (scan.point(i) - scan.sensor).cast<double>();
     slopes.push_back(ray.z() / std::hypot(ray.x(), ray.y()));
   }
   std::sort(slopes.begin(), slopes.end());
@@ -266,7 +266,7 @@ TEST(SightMask, WhatIsAtOrAboveTheHighestHitIsProtected) {
 TEST(SightMask, AnEmptyScanSeesNothing) {
   Case c = openSquare();
   c.config.blind_radius = 0.0;  // also where the distance is zero
-  c.scan.points.clear();
+  c.scan = test::placedScan(c.scan.anchor, c.scan.sensor.cast<double>(), {});
   const BitGrid in_sight = cellsInSight(c.scan, c.scan_bits, c.map, c.matrix, c.config);
   for (int x = 0; x < in_sight.size(); ++x) {
     for (int y = 0; y < in_sight.size(); ++y) EXPECT_EQ(in_sight.at(x, y), 0U);

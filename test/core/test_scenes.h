@@ -87,14 +87,18 @@ inline Scan sensorFrameScan(const std::vector<Eigen::Vector3d>& points_in_map,
 
 /// A scan as the stages get it: points [m] relative to the corner of the anchor column.
 inline PlacedScan placedScan(ColumnIndex anchor, const Eigen::Vector3d& sensor,
-                             const std::vector<Eigen::Vector3d>& points) {
+                             const std::vector<Eigen::Vector3d>& points, double res_g = 0.5) {
   PlacedScan placed;
   placed.anchor = anchor;
   placed.sensor = sensor.cast<float>();
   for (const Eigen::Vector3d& p : points) {
-    placed.source_index.push_back(static_cast<std::uint32_t>(placed.points.size()));
-    placed.points.push_back(p.cast<float>());
+    placed.source_index.push_back(static_cast<std::uint32_t>(placed.size()));
+    placed.x.push_back(static_cast<float>(p.x()));
+    placed.y.push_back(static_cast<float>(p.y()));
+    placed.z.push_back(static_cast<float>(p.z()));
   }
+  placed.cloud_size = placed.size();
+  findRuns(placed, res_g);
   return placed;
 }
 
