@@ -197,7 +197,7 @@ struct AgreementConfig {
   double min_share = 0.6;
   double min_share_strong = 0.2;
   double join_share = 0.4;
-  double unknown_share = 0.3;
+  double unknown_share = 0.5;
   int join_rounds = 8;
   int surface_bits = 2;
 

@@ -332,7 +332,7 @@ TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
   EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside - 7 * 2 * 2);
 }
 
-TEST(Agreement, AnUnknownCellNeedsFewerDynamicNeighboursThanALeaningOne) {
+TEST(Agreement, UnknownAndLeaningCellsHaveSharesOfTheirOwn) {
   // A far object of which the beams saw one row free: 3 of 8 neighbours of the next are dynamic.
   EvidenceWindow window = emptyWindow(9);
   setSuspected(window, {4, 4, 2, 6, 20, 20});
@@ -342,6 +342,8 @@ TEST(Agreement, AnUnknownCellNeedsFewerDynamicNeighboursThanALeaningOne) {
   set(leaning.leaning, {4, 4, 2, 6, 21, 21});
   AgreementConfig config;
   config.join_rounds = 1;
+  config.unknown_share = 0.3;
+  config.join_share = 0.4;
   BitGrid of_unknown = window.suspected, of_leaning = leaning.suspected;
   growObjects(window, of_unknown, kGround, config);
   growObjects(leaning, of_leaning, kGround, config);
