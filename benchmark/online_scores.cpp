@@ -11,35 +11,14 @@
 #include <utility>
 
 #include "beautymap/evaluation.h"
-#include "beautymap/io/cloud_fields.h"
-#include "beautymap/io/scan_conversion.h"
 #include "beautymap/map_cleaner.h"
 #include "beautymap/online_map.h"
+#include "labelled_scans.h"
 
 namespace beautymap {
 namespace {
 
 using Classes = std::vector<PointClass>;
-
-struct LabelledScan {
-  Scan scan;
-  std::vector<bool> moving;
-};
-
-std::vector<LabelledScan> readAll(const std::string& input) {
-  const auto source = openScanSource({input}, SourceOptions());
-  std::vector<LabelledScan> scans;
-  SourceScan read;
-  while (source->next(read)) {
-    scans.emplace_back();
-    convertScan(read, scans.back().scan);
-    const FieldReader label(read.cloud, "label");
-    for (std::size_t i = 0; i < read.cloud.width; ++i) {
-      scans.back().moving.push_back(source->isMoving(static_cast<std::uint32_t>(label(i))));
-    }
-  }
-  return scans;
-}
 
 void count(const LabelledScan& scan, const Classes& classes, Score& score) {
   for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -77,8 +56,7 @@ Classes classesOf(const OnlineMap& map, const Scan& scan) {
 }
 
 void run(const std::string& input, const Config& config) {
-  const std::vector<LabelledScan> scans = readAll(input);
-  if (scans.empty()) throw InputError("there are no scans");
+  const std::vector<LabelledScan> scans = readLabelledScans(input);
   Score live, finished, offline;
   std::vector<double> hits_ms, free_ms;
   OnlineMap map(config);

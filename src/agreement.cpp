@@ -52,7 +52,7 @@ Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x
     const int bit = lowestBitIndex(rest);
     const int count = countAround(dynamic_around, bit, counted);
     const bool leans = (leaning >> bit & 1) != 0;
-    const double share = leans ? config.join_share : config.min_share;
+    const double share = leans ? config.join_share : config.unknown_share;
     if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
       joining |= lowestBit(rest);
     }
@@ -86,6 +86,26 @@ BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
   return unsupported;
 }
 
+BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits) {
+  BitGrid noise(window.suspected.window(), 0);
+  for (int x = 1; x + 1 < window.suspected.size(); ++x) {
+    for (int y = 1; y + 1 < window.suspected.size(); ++y) {
+      const Bits suspected = window.suspected.at(x, y);
+      const Bits staying = window.occupied.at(x, y) & ~suspected & ~window.leaning.at(x, y);
+      Bits layer = suspected & staying << 1;  // n bits above a surface's first one
+      if (layer == 0) continue;
+      Bits near = 0;
+      for (const Bits column : around(window.suspected, x, y)) near |= column;
+      for (int n = 0; n < surface_bits; ++n, layer = suspected & layer << 1) {
+        // An object reaches higher than the noise, even where beams missed some of its cells.
+        const int up = surface_bits - n;
+        noise.at(x, y) |= layer & ~(near >> up | near >> (up + 1) | near >> (up + 2));
+      }
+    }
+  }
+  return noise;
+}
+
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
   struct Column {
@@ -115,6 +135,7 @@ int agreementMargin(const AgreementConfig& config) { return 1 + config.join_roun
 BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
   BitGrid dynamic = window.suspected;
   excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
+  excludeCells(dynamic, surfaceNoise(window, config.surface_bits));
   growObjects(window, dynamic, ground_bit, config);
   return dynamic;
 }

@@ -14,6 +14,14 @@ namespace {
 // Nearer columns span so much of the view that a beam image says little about them.
 constexpr float kNearestColumn = 0.5F;  // [m]
 
+/// How far a point that a scan measured at a range may be from where it was [m]: one standard
+/// deviation of the scan's pose.
+float poseError(float range, const VisibilityConfig& config) {
+  const auto position = static_cast<float>(config.pose_position);
+  const auto turned = range * static_cast<float>(config.pose_rotation * 3.14159265358979 / 180.0);
+  return std::sqrt(position * position + turned * turned);
+}
+
 /// Where one column of the map stands in the beam image.
 struct ColumnView {
   int first_azimuth;  ///< pixel, not yet wrapped
@@ -21,11 +29,15 @@ struct ColumnView {
   BeamImage::Pixel behind;  ///< greater pixels have beams that passed the column
   float bottom_slope;       ///< of bit 0, in pixels
   float bit_slopes;         ///< height of a bit in pixels
+  float more_slopes;        ///< margin below and above a cell in pixels
 
-  int firstSlope(int bit) const {
-    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes);
+  int firstSlope(int bit) const { return slopeOf(bit, -more_slopes); }
+  int lastSlope(int bit) const { return slopeOf(bit + 1, more_slopes); }
+
+ private:
+  int slopeOf(int bit, float more) const {
+    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes + more);
   }
-  int lastSlope(int bit) const { return firstSlope(bit + 1); }
 };
 
 /// Some columns of one row of the window. One array per quantity, of a fixed size: the compiler
@@ -65,11 +77,21 @@ class ColumnViews {
   int y(std::size_t i) const { return y_[i]; }
   float distance(std::size_t i) const { return distance_[i]; }
   /// @param behind_m  what ends so far behind the column's centre has passed it [m]
-  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m) const {
+  /// @param around_m  margin around each cell of the column [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, const MatrixConfig& matrix, float behind_m,
+                float around_m = 0.0F) const {
     const float turn = last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
-    return {floorToInt(first_[i]), floorToInt(last_[i] + turn),
-            BeamImage::limitFor(distance_[i] + behind_m), bottom_slope_[i],
-            top_slope_[i] - bottom_slope_[i]};
+    const float last = last_[i] + turn;
+    const float quarter = 0.25F * static_cast<float>(beams.azimuthPixels());
+    const float wider =
+        std::min(quarter, (last - first_[i]) * around_m / static_cast<float>(matrix.res_g));
+    const float bit_slopes = top_slope_[i] - bottom_slope_[i];
+    return {floorToInt(first_[i] - wider),
+            floorToInt(last + wider),
+            BeamImage::limitFor(distance_[i] + behind_m),
+            bottom_slope_[i],
+            bit_slopes,
+            bit_slopes * around_m / static_cast<float>(matrix.res_h)};
   }
 
  private:
@@ -291,10 +313,17 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
     for (std::size_t i = 0; i < views.size(); ++i) {
       const float distance = views.distance(i);
       if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const ColumnView view = views.at(i, beams, margin);
+      const float unsure = poseError(distance, config);
+      const ColumnView view = views.at(i, beams, matrix, margin + unsure);
       const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
       if (judged == 0 || !anyBeamPassed(beams, view)) continue;
-      seen_free.at(x, views.y(i)) = seenFree(judged, beams, view, config, sums);
+      Bits free = seenFree(judged, beams, view, config, sums);
+      if (free != 0 && unsure > 0.0F) {
+        // The cell may be anywhere around where the pose puts it: all of that must be free.
+        const ColumnView around = views.at(i, beams, matrix, margin + unsure, unsure);
+        free = seenFree(free, beams, around, config, sums);
+      }
+      seen_free.at(x, views.y(i)) = free;
     }
     views.clear();
   };

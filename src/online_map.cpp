@@ -261,7 +261,7 @@ BitGrid OnlineMap::dynamicInScan() const {
   // The finished map waits for more evidence; of an object that has just entered, the cells that
   // were never seen before are all that is known.
   AgreementConfig agreement = config_.agreement;
-  agreement.min_share = config_.online.live_share;
+  agreement.unknown_share = config_.online.live_share;
   agreement.join_share = 1.5 * config_.online.live_share;
   agreement.join_rounds = config_.online.live_rounds;
   BitGrid dynamic = std::move(cells.suspected);

@@ -23,10 +23,18 @@ struct EvidenceWindow {
 BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
                          const AgreementConfig& config);
 
+/// The suspected cells that are but the noise of a surface that stays (the ground, a roof, a
+/// table): with noise of ranges and poses some scans hit the cells upon it, and most see them free.
+/// They are up to surface_bits high upon a cell that stays and does not even lean, and right above
+/// them nothing else is suspected in their column and those around: what moves is thicker.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits);
+
 /// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
-/// object: a share of their occupied neighbours is dynamic, and they do not rest on a cell that
-/// stays (what is seen over the roof of a parked car is no reason to remove the roof). Columns at
-/// the window's border do not change.
+/// object: a share of their occupied neighbours is dynamic (a larger one for unknown cells, of
+/// which nothing says that they moved), and they do not rest on a cell that stays (what is seen
+/// over the roof of a parked car is no reason to remove the roof). Columns at the window's border
+/// do not change.
 /// @param dynamic  the dynamic cells of the same window
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config);
@@ -34,7 +42,8 @@ void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
 /// How far from its border a window is needed to know the dynamic cells within [columns].
 int agreementMargin(const AgreementConfig& config);
 
-/// The dynamic cells: the suspected ones with support, and what joins them round by round.
+/// The dynamic cells: the suspected ones with support that are no noise, and what joins them round
+/// by round.
 /// @return  valid for the columns agreementMargin() in from the window's border
 BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 

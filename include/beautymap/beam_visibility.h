@@ -99,7 +99,9 @@ class BeamImage {
 };
 
 /// The candidates that the scan saw free: beams went through the cell's angular footprint, and
-/// nearly all of those in it ended behind the cell.
+/// nearly all of those in it ended behind the cell. With a stated error of the pose the same must
+/// hold for the cell with that margin around it, so that drift does not wear down walls: a margin
+/// can only make fewer cells seen free.
 /// @param recycled  an earlier result whose memory is used again
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,

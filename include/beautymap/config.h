@@ -138,6 +138,8 @@ struct VisibilityConfig {
   int min_beams = 2;
   double min_share = 0.8;
   double margin = 0.3;
+  double pose_position = 0.0;
+  double pose_rotation = 0.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -149,6 +151,12 @@ struct VisibilityConfig {
     v("min_share", min_share, 0.5, 1.0, "",
       "share of the beams in the footprint that must have passed");
     v("margin", margin, 0.0, 5.0, "m", "a beam passed when it ended that far behind the cell");
+    v("pose_position", pose_position, 0.0, 2.0, "m",
+      "standard deviation of a scan's position, if known: cells are seen free only with that "
+      "margin "
+      "around them");
+    v("pose_rotation", pose_rotation, 0.0, 10.0, "deg",
+      "standard deviation of a scan's rotation, if known: the same, growing with the range");
   }
 };
 
@@ -189,7 +197,9 @@ struct AgreementConfig {
   double min_share = 0.6;
   double min_share_strong = 0.2;
   double join_share = 0.4;
+  double unknown_share = 0.5;
   int join_rounds = 8;
+  int surface_bits = 2;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -199,8 +209,11 @@ struct AgreementConfig {
       "share of its occupied neighbours that must be dynamic for a cell to be, too");
     v("min_share_strong", min_share_strong, 0.0, 1.0, "", "the same where the evidence is strong");
     v("join_share", join_share, 0.0, 1.0, "", "the same where a cell only leans to dynamic");
+    v("unknown_share", unknown_share, 0.0, 1.0, "", "the same where a cell is unknown");
     v("join_rounds", join_rounds, 0, 30, "columns",
       "how far an object grows over leaning and unknown cells");
+    v("surface_bits", surface_bits, 0, 16, "bits",
+      "that many dynamic cells upon one that stays, with none above them, are its noise");
   }
 };
 

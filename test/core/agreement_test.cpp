@@ -131,7 +131,7 @@ bool joins(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, i
                                    !isSet(dynamic, x, y, bit - 1);
   if (rests_on_what_stays) return false;
   const Around around = look(window, dynamic, x, y, bit, ground_bit);
-  const double share = leaning ? config.join_share : config.min_share;
+  const double share = leaning ? config.join_share : config.unknown_share;
   return around.dynamic > 0 && around.dynamic >= share * around.occupied;
 }
 
@@ -205,7 +205,7 @@ TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
     const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
     const int ground_bit = random.integer(-1, 40);
     AgreementConfig config;
-    config.min_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
+    config.unknown_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
     config.join_share = random.pick<double>({0.0, 0.2, 0.4, 0.8});
     config.join_rounds = 1;
     BitGrid result = window.suspected;
@@ -226,6 +226,79 @@ TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
   }
   EXPECT_GT(joining, 5000);
   EXPECT_GT(staying, 10000);
+}
+
+TEST(Agreement, WhatIsThinUponASurfaceIsItsNoise) {
+  EvidenceWindow window = emptyWindow(9);
+  set(window.occupied, {0, 8, 0, 8, kGround, kGround});
+  setSuspected(window, {2, 6, 2, 6, kGround + 1, kGround + 2});
+  EXPECT_EQ(countOf(surfaceNoise(window, 0)), 0);
+  EXPECT_EQ(countOf(surfaceNoise(window, 1)), 0);  // it is thicker
+  EXPECT_EQ(countOf(surfaceNoise(window, 2)), 5 * 5 * 2);
+  // Upon a roof it is the same.
+  set(window.occupied, {0, 8, 0, 8, 30, 30});
+  setSuspected(window, {2, 6, 2, 6, 31, 31});
+  EXPECT_EQ(countOf(surfaceNoise(window, 1)), 5 * 5);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 0);
+}
+
+TEST(Agreement, WhatReachesHigherOrTouchesNothingIsNoNoise) {
+  EvidenceWindow window = emptyWindow(9);
+  set(window.occupied, {0, 8, 0, 8, kGround, kGround});
+  setSuspected(window, {3, 5, 3, 5, kGround + 1, kGround + 3});
+  EXPECT_EQ(countOf(surfaceNoise(window, 2)), 0);
+  // Feet, from which beams missed the way up to the body beside them.
+  window = emptyWindow(9);
+  set(window.occupied, {0, 8, 0, 8, kGround, kGround});
+  setSuspected(window, {4, 4, 4, 4, kGround + 1, kGround + 1});
+  setSuspected(window, {5, 5, 4, 4, kGround + 4, kGround + 8});
+  EXPECT_EQ(countOf(surfaceNoise(window, 2)), 0);
+  // In free space.
+  window = emptyWindow(9);
+  setSuspected(window, {3, 5, 3, 5, kGround + 3, kGround + 3});
+  EXPECT_EQ(countOf(surfaceNoise(window, 2)), 0);
+}
+
+/// The rule of noise, one cell after the other.
+bool isNoise(const EvidenceWindow& window, int x, int y, int bit, int surface_bits) {
+  int height = 0;  // of the cell above the surface that stays
+  while (bit - height >= 0 && isSet(window.suspected, x, y, bit - height)) ++height;
+  if (height == 0 || height > surface_bits) return false;
+  const int surface = bit - height;
+  if (!isSet(window.occupied, x, y, surface) || isSet(window.leaning, x, y, surface)) return false;
+  const int first_above = surface + surface_bits + 1;
+  for (int nx = x - 1; nx <= x + 1; ++nx) {
+    for (int ny = y - 1; ny <= y + 1; ++ny) {
+      for (int at = first_above; at < first_above + 3; ++at) {
+        if (isSet(window.suspected, nx, ny, at)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+TEST(Agreement, SurfaceNoiseAgreesWithLoopsOverTheNeighbours) {
+  int noise = 0, others = 0;
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    const int surface_bits = random.integer(0, 4);
+    const BitGrid result = surfaceNoise(window, surface_bits);
+    const int size = result.size();
+    for (int x = 0; x < size; ++x) {
+      for (int y = 0; y < size; ++y) {
+        const bool border = x == 0 || y == 0 || x == size - 1 || y == size - 1;
+        for (int bit = 0; bit < kMaxBits; ++bit) {
+          const bool expected = !border && isNoise(window, x, y, bit, surface_bits);
+          ASSERT_EQ(isSet(result, x, y, bit), expected)
+              << "seed " << seed << " column " << x << ", " << y << " bit " << bit;
+          ++(expected ? noise : others);
+        }
+      }
+    }
+  }
+  EXPECT_GT(noise, 200);
+  EXPECT_GT(others, 10000);
 }
 
 /// A car of which only the outline was seen free.
@@ -254,9 +327,28 @@ TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
   const int after_one = countOf(dynamicCells(window, kGround, config));
   EXPECT_GT(after_one, car - inside);
   EXPECT_LT(after_one, car);
-  // Cells that nothing speaks for do not join.
+  // Cells that nothing speaks for do not join; the two upon them are then noise of theirs.
   window.leaning = BitGrid(window.leaning.window(), 0);
-  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside - 7 * 2 * 2);
+}
+
+TEST(Agreement, UnknownAndLeaningCellsHaveSharesOfTheirOwn) {
+  // A far object of which the beams saw one row free: 3 of 8 neighbours of the next are dynamic.
+  EvidenceWindow window = emptyWindow(9);
+  setSuspected(window, {4, 4, 2, 6, 20, 20});
+  set(window.occupied, {4, 4, 2, 6, 21, 22});
+  EvidenceWindow leaning = window;
+  set(window.unknown, {4, 4, 2, 6, 21, 21});
+  set(leaning.leaning, {4, 4, 2, 6, 21, 21});
+  AgreementConfig config;
+  config.join_rounds = 1;
+  config.unknown_share = 0.3;
+  config.join_share = 0.4;
+  BitGrid of_unknown = window.suspected, of_leaning = leaning.suspected;
+  growObjects(window, of_unknown, kGround, config);
+  growObjects(leaning, of_leaning, kGround, config);
+  EXPECT_NE(of_unknown.at(4, 4) >> 21 & 1, Bits{0});
+  EXPECT_EQ(of_leaning.at(4, 4) >> 21 & 1, Bits{0});
 }
 
 TEST(Agreement, WhatRestsOnACellThatStaysDoesNotJoin) {

@@ -259,6 +259,81 @@ TEST(CellsSeenFree, OneBeamThatEndsInTheCellIsOutvotedByMany) {
   EXPECT_FALSE(view.seesFree(20, 0, 0.0));
 }
 
+TEST(CellsSeenFree, AStatedPositionErrorWidensTheCell) {
+  View view;
+  view.addWall(40.0, -20.0, 20.0, -0.1, 0.1);
+  view.addWall(10.0, 1.2, 20.0, -0.1, 0.1);  // a wall's end 0.2 m beside the cell at 20 m
+  EXPECT_TRUE(view.seesFree(40, 0, 0.0));
+  view.config.pose_position = 0.1;
+  EXPECT_TRUE(view.seesFree(40, 0, 0.0));
+  view.config.pose_position = 0.6;
+  EXPECT_FALSE(view.seesFree(40, 0, 0.0));
+  // Upwards, too.
+  view.points.clear();
+  view.addWall(40.0, -20.0, 20.0, -0.1, 0.01);
+  view.addWall(10.0, -20.0, 20.0, 0.01, 0.1);
+  view.config.pose_position = 0.0;
+  EXPECT_TRUE(view.seesFree(40, 0, 0.0));
+  view.config.pose_position = 0.3;
+  EXPECT_FALSE(view.seesFree(40, 0, 0.0));
+}
+
+TEST(CellsSeenFree, AStatedPoseErrorWidensTheMargin) {
+  View view;
+  view.addWall(10.0, -25.0, 25.0, -0.2, 0.2);
+  EXPECT_TRUE(view.seesFree(18, 0, 0.0));
+  view.config.pose_position = 0.5;
+  EXPECT_TRUE(view.seesFree(17, 0, 0.0));
+  EXPECT_FALSE(view.seesFree(18, 0, 0.0));
+}
+
+TEST(CellsSeenFree, AStatedRotationErrorGrowsWithTheRange) {
+  // A roof edge: beams pass right above it, 0.1 m above the cell's bottom.
+  const auto sees = [](int x, double rotation_deg) {
+    View view;
+    const double distance = 0.5 * x, bottom = -0.1 / distance;
+    view.addWall(distance, -20.0, 20.0, -0.2, bottom - 0.004);
+    view.addWall(90.0, -20.0, 20.0, bottom - 0.004, 0.2);
+    view.config.pose_rotation = rotation_deg;
+    return view.seesFree(x, 0, 0.0);
+  };
+  EXPECT_TRUE(sees(10, 0.0));
+  EXPECT_TRUE(sees(10, 0.5));  // 4 cm
+  EXPECT_TRUE(sees(80, 0.0));
+  EXPECT_FALSE(sees(80, 0.5));  // 35 cm
+}
+
+TEST(CellsSeenFree, AStatedPoseErrorOnlyTakesCellsAway) {
+  for (std::uint32_t seed = 0; seed < 5; ++seed) {
+    const PlacedScan scan = scatteredScan(seed, 20000);
+    MatrixConfig matrix;
+    VisibilityConfig config;
+    config.pixel_deg = 1.0;
+    BeamImage beams(config);
+    beams.fill(scan);
+    const ColumnWindow window{{3 - 40, -4 - 40}, 81};
+    const BitGrid candidates(window, ~Bits{0});
+    const HeightGrid ground(window, -3.0F);
+    const auto seen = [&](double position, double rotation_deg) {
+      config.pose_position = position;
+      config.pose_rotation = rotation_deg;
+      return cellsSeenFree(beams, candidates, ground, scan, matrix, config);
+    };
+    const BitGrid exact = seen(0.0, 0.0);
+    for (const double rotation : {0.0, 0.2, 2.0}) {
+      const BitGrid uncertain = seen(0.05, rotation);
+      int taken = 0;
+      for (int x = 0; x < exact.size(); ++x) {
+        for (int y = 0; y < exact.size(); ++y) {
+          ASSERT_EQ(uncertain.at(x, y) & ~exact.at(x, y), Bits{0});
+          taken += __builtin_popcountll(exact.at(x, y) & ~uncertain.at(x, y));
+        }
+      }
+      EXPECT_GT(taken, 0);
+    }
+  }
+}
+
 /// Rounding to float moves a position in the image by far less: there are a few hundred pixels, all
 /// coordinates are dyadic, and a handful of operations are rounded.
 constexpr double kRounding = 1e-4;  // [pixels] and [m]
