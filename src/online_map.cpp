@@ -3,6 +3,7 @@
 #include "beautymap/online_map.h"
 
 #include <algorithm>
+#include <functional>
 #include <future>
 #include <tuple>
 #include <utility>
@@ -154,8 +155,9 @@ void OnlineMap::addOccupied() {
 }
 
 void OnlineMap::addHitEvidence() {
-  const ColumnWindow window = regionOfInterest(placed_, config_.matrix);
-  hits_ = encodeScan(placed_, map_.extract(window, &Tile::ground, Tile::kNoHeight), config_.matrix);
+  const ColumnWindow window = seenRegion(placed_, config_.matrix);
+  ground_ = map_.extract(window, &Tile::ground, Tile::kNoHeight, std::move(ground_));
+  hits_ = encodeScan(placed_, ground_, config_.matrix, std::move(hits_));
   addEvidence(hits_, true);
 }
 
@@ -166,37 +168,28 @@ void OnlineMap::addSeenFree() {
   const int height = static_cast<int>(config_.online.free_height / config_.matrix.res_h);
   const Bits remembered =
       lowBits(std::min(config_.matrix.bits_below + height, config_.matrix.n_bit));
-  BitGrid candidates(hits_.window(), 0);
-  HeightGrid ground(hits_.window(), Tile::kNoHeight);
-  forEachColumn(std::as_const(map_), candidates.window(),
+  // Two halves of the columns, for a thread each.
+  const int middle = hits_.size() / 2;
+  for (Half& half : halves_) half.candidates.reset(hits_.window(), 0);
+  ground_.reset(hits_.window(), Tile::kNoHeight);
+  forEachColumn(std::as_const(map_), hits_.window(),
                 [&](int x, int y, const Tile& tile, std::size_t column) {
-                  ground.at(x, y) = tile.ground[column];
+                  ground_.at(x, y) = tile.ground[column];
                   if (tile.ground[column] == Tile::kNoHeight) return;
-                  candidates.at(x, y) = (tile.occupied[column] | remembered) & ~hits_.at(x, y);
+                  halves_[x < middle ? 0 : 1].candidates.at(x, y) =
+                      (tile.occupied[column] | remembered) & ~hits_.at(x, y);
                 });
   clock.lap("matrix_comparison");
-  const BitGrid seen_free = lookThroughHalves(candidates, ground);
-  clock.lap("beam_visibility");
-  addEvidence(seen_free, false);
-  clock.lap("evidence");
-}
-
-BitGrid OnlineMap::lookThroughHalves(const BitGrid& candidates, const HeightGrid& ground) const {
-  const int middle = candidates.size() / 2;
-  const auto look = [&](int begin, int end) {
-    BitGrid half(candidates.window(), 0);
-    for (int x = begin; x < end; ++x) {
-      for (int y = 0; y < half.size(); ++y) half.at(x, y) = candidates.at(x, y);
-    }
-    return cellsSeenFree(beams_, half, ground, placed_, config_.matrix, config_.visibility);
+  const auto look = [&](Half& half) {
+    half.seen_free = cellsSeenFree(beams_, half.candidates, ground_, placed_, config_.matrix,
+                                   config_.visibility, std::move(half.seen_free));
   };
-  auto other = std::async(std::launch::async, look, 0, middle);
-  BitGrid seen_free = look(middle, candidates.size());
-  const BitGrid rest = other.get();
-  for (int x = 0; x < middle; ++x) {
-    for (int y = 0; y < rest.size(); ++y) seen_free.at(x, y) = rest.at(x, y);
-  }
-  return seen_free;
+  auto other = std::async(std::launch::async, look, std::ref(halves_[0]));
+  look(halves_[1]);
+  other.get();
+  clock.lap("beam_visibility");
+  for (const Half& half : halves_) addEvidence(half.seen_free, false);
+  clock.lap("evidence");
 }
 
 void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
@@ -238,19 +231,19 @@ void OnlineMap::settle() {
   }
 }
 
-BitGrid OnlineMap::dynamicInScan() const {
+void OnlineMap::findDynamicInScan() {
   const ColumnWindow& window = hits_.window();
   const Bits above_ground = ~lowBits(config_.matrix.bits_below + 1);
-  EvidenceWindow cells;
-  for (BitGrid* grid : {&cells.occupied, &cells.suspected, &cells.leaning, &cells.unknown}) {
-    *grid = BitGrid(window, 0);
+  EvidenceWindow& cells = live_;
+  for (BitGrid* grid : {&cells.occupied, &cells.leaning, &cells.unknown, &dynamic_in_scan_}) {
+    grid->reset(window, 0);
   }
   forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
     const Bits hit = hits_.at(x, y) & above_ground;
     if (hit == 0) return;
     const Bits dynamic = hit & tile.dynamic[column];
     cells.occupied.at(x, y) = hit;
-    cells.suspected.at(x, y) = dynamic;
+    dynamic_in_scan_.at(x, y) = dynamic;
     cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
     const Bits unknown = hit & tile.unknown[column] & ~dynamic;
     if (unknown == 0) return;
@@ -264,13 +257,12 @@ BitGrid OnlineMap::dynamicInScan() const {
   agreement.unknown_share = config_.online.live_share;
   agreement.join_share = 1.5 * config_.online.live_share;
   agreement.join_rounds = config_.online.live_rounds;
-  BitGrid dynamic = std::move(cells.suspected);
-  growObjects(cells, dynamic, config_.matrix.bits_below, agreement);
-  return dynamic;
+  growObjects(cells, dynamic_in_scan_, config_.matrix.bits_below, agreement);
 }
 
 void OnlineMap::classify(const Scan& scan) {
-  const BitGrid grown = dynamicInScan();
+  findDynamicInScan();
+  const BitGrid& grown = dynamic_in_scan_;
   const ColumnIndex corner = grown.window().corner;
   classes_.assign(scan.cloud.size(), PointClass::kDropped);
   forEachTileRun(

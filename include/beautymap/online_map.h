@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "beautymap/agreement.h"
 #include "beautymap/beam_visibility.h"
 #include "beautymap/config.h"
 #include "beautymap/map_cleaner.h"
@@ -62,12 +64,10 @@ class OnlineMap {
   void estimateStaleGround(ColumnIndex index, Tile& tile);
   void addOccupied();
   void addHitEvidence();
-  /// cellsSeenFree(), which takes most of a scan's time, in two threads.
-  BitGrid lookThroughHalves(const BitGrid& candidates, const HeightGrid& ground) const;
   /// @param hit  whether the cells were hit; otherwise they were seen free
   void addEvidence(const BitGrid& cells, bool hit);
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
-  BitGrid dynamicInScan() const;
+  void findDynamicInScan();
   void classify(const Scan& scan);
 
   Config config_;
@@ -79,6 +79,15 @@ class OnlineMap {
   std::optional<double> z_origin_;
   PlacedScan placed_;  ///< the last scan
   BitGrid hits_;       ///< its matrix
+  BitGrid dynamic_in_scan_;
+
+  // Of one scan; members so that their memory is used again.
+  HeightGrid ground_;
+  struct Half {
+    BitGrid candidates, seen_free;
+  };
+  std::array<Half, 2> halves_;
+  EvidenceWindow live_;
   std::vector<PointClass> classes_;
   std::vector<float> neighbours_;  ///< of one column
   /// Columns whose lowest height fell, or whose ground was seen to be none.
