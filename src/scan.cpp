@@ -152,7 +152,7 @@ PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const Scan
 void findRuns(PlacedScan& placed, double res_g) {
   const float columns_per_metre = static_cast<float>(1.0 / res_g);
   std::array<std::int32_t, kBlock> x, y, changed;
-  std::array<std::uint32_t, kBlock> begins;
+  std::array<std::uint32_t, kBlock + 1> begins;
   placed.runs.clear();
   for (std::size_t first = 0; first < placed.size(); first += kBlock) {
     const std::size_t size = std::min(kBlock, placed.size() - first);
@@ -169,10 +169,14 @@ void findRuns(PlacedScan& placed, double res_g) {
       begins[count] = static_cast<std::uint32_t>(i);
       count += static_cast<std::size_t>(changed[i]);  // no branch: runs end anywhere
     }
+    begins[count] = static_cast<std::uint32_t>(size);
+    const std::size_t before = placed.runs.size();
+    placed.runs.resize(before + count);
+    ColumnRun* runs = &placed.runs[before];
+    const auto offset = static_cast<std::uint32_t>(first);
     for (std::size_t run = 0; run < count; ++run) {
-      const std::size_t begin = begins[run], end = run + 1 < count ? begins[run + 1] : size;
-      placed.runs.push_back({x[begin], y[begin], static_cast<std::uint32_t>(first + begin),
-                             static_cast<std::uint32_t>(first + end)});
+      const std::uint32_t begin = begins[run];
+      runs[run] = {x[begin], y[begin], offset + begin, offset + begins[run + 1]};
     }
   }
 }
