@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -73,8 +72,7 @@ std::string interval(double low, double high, bool last) {
   return last ? metres(low) + " m and more" : metres(low) + " to " + metres(high) + " m";
 }
 
-void run(const std::string& input, const Config& config) {
-  const std::vector<LabelledScan> scans = readLabelledScans(input);
+void run(const std::vector<LabelledScan>& scans, const Config& config) {
   MapCleaner cleaner(config);
   for (const LabelledScan& labelled : scans) cleaner.observe(labelled.scan);
   cleaner.estimateGround();
@@ -116,17 +114,5 @@ void run(const std::string& input, const Config& config) {
 }  // namespace beautymap
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: beautymap_error_table INPUT [group.parameter=value...]\n");
-    return 2;
-  }
-  try {
-    beautymap::Config config;
-    for (int i = 2; i < argc; ++i) beautymap::setParameter(config, argv[i]);
-    beautymap::run(argv[1], config);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beautymap_error_table: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return beautymap::runOnLabelledScans("beautymap_error_table", argc, argv, beautymap::run);
 }

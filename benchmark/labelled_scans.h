@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <vector>
 
+#include "beautymap/config.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
 #include "beautymap/io/scan_conversion.h"
@@ -33,6 +36,24 @@ inline std::vector<LabelledScan> readLabelledScans(const std::string& input) {
   }
   if (scans.empty()) throw InputError(input + ": there are no scans");
   return scans;
+}
+
+/// What main() of `NAME INPUT [group.parameter=value...]` returns after run(scans, config).
+template <typename F>
+int runOnLabelledScans(const char* name, int argc, char** argv, F run) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s INPUT [group.parameter=value...]\n", name);
+    return 2;
+  }
+  try {
+    Config config;
+    for (int i = 2; i < argc; ++i) setParameter(config, argv[i]);
+    run(readLabelledScans(argv[1]), config);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 2;
+  }
+  return 0;
 }
 
 }  // namespace beautymap

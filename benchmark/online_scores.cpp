@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <utility>
 
 #include "beautymap/evaluation.h"
@@ -55,8 +54,7 @@ Classes classesOf(const OnlineMap& map, const Scan& scan) {
   return classes;
 }
 
-void run(const std::string& input, const Config& config) {
-  const std::vector<LabelledScan> scans = readLabelledScans(input);
+void run(const std::vector<LabelledScan>& scans, const Config& config) {
   Score live, finished, offline;
   std::vector<double> hits_ms, free_ms;
   OnlineMap map(config);
@@ -99,17 +97,5 @@ void run(const std::string& input, const Config& config) {
 }  // namespace beautymap
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: beautymap_online_scores INPUT [group.parameter=value...]\n");
-    return 2;
-  }
-  try {
-    beautymap::Config config;
-    for (int i = 2; i < argc; ++i) beautymap::setParameter(config, argv[i]);
-    beautymap::run(argv[1], config);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "beautymap_online_scores: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return beautymap::runOnLabelledScans("beautymap_online_scores", argc, argv, beautymap::run);
 }

@@ -279,16 +279,17 @@ void BeamImage::findDirections(const PlacedScan& scan) {
 void BeamImage::fill(const PlacedScan& scan) {
   findDirections(scan);
   // Most sensors use a small part of the slopes: the image is then small enough for the cache.
-  const int slopes = std::max(0, last_slope_ - first_slope_ + 1);
+  const auto slopes = static_cast<std::size_t>(std::max(0, last_slope_ - first_slope_ + 1));
   const auto azimuths = static_cast<std::size_t>(azimuth_pixels_);
-  pixels_.assign(azimuths * static_cast<std::size_t>(slopes) + kPadding, kEmpty);
+  pixels_.assign(azimuths * slopes + kPadding, kEmpty);
   farthest_.assign(azimuths, 0);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (slopes_[i] == kOutside) continue;
-    const int u = azimuths_[i], v = slopes_[i] - first_slope_;
-    Pixel& pixel = pixels_[static_cast<std::size_t>(u * slopes + v)];
+    const auto u = static_cast<std::size_t>(azimuths_[i]);
+    const auto v = static_cast<std::size_t>(slopes_[i] - first_slope_);
+    Pixel& pixel = pixels_[u * slopes + v];
     pixel = std::min(pixel & ~kMaxCount, ends_[i]) | std::min(countOf(pixel) + 1, kMaxCount);
-    Pixel& farthest = farthest_[static_cast<std::size_t>(u)];
+    Pixel& farthest = farthest_[u];
     farthest = std::max(farthest, ends_[i] | 1);
   }
 }

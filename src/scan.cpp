@@ -132,12 +132,12 @@ PlacedScan placeScan(const Scan& scan, double z_origin, double res_g, const Scan
                  z = static_cast<float>(static_cast<double>(pz) + tz);
                });
   } else {
-    const Eigen::Matrix3f R = scan.T_map_cloud.linear().cast<float>();
+    const Eigen::Matrix3f rotation = scan.T_map_cloud.linear().cast<float>();
     const Eigen::Vector3f t = shift.cast<float>();
     // Copies that no store can change.
-    const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), tx = t.x();
-    const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2), ty = t.y();
-    const float zx = R(2, 0), zy = R(2, 1), zz = R(2, 2), tz = t.z();
+    const float xx = rotation(0, 0), xy = rotation(0, 1), xz = rotation(0, 2), tx = t.x();
+    const float yx = rotation(1, 0), yy = rotation(1, 1), yz = rotation(1, 2), ty = t.y();
+    const float zx = rotation(2, 0), zy = rotation(2, 1), zz = rotation(2, 2), tz = t.z();
     movePoints(scan, config, placed, dropped,
                [=](float px, float py, float pz, float& x, float& y, float& z) {
                  x = xx * px + xy * py + xz * pz + tx;
