@@ -48,11 +48,13 @@ std::vector<PointClass> classesOf(const OnlineMap& map, const Scan& scan) {
   const double res_g = map.config().matrix.res_g;
   const PlacedScan placed = placeScan(scan, map.zOrigin(), res_g, map.config().scan, dropped);
   std::vector<PointClass> classes(scan.cloud.size(), PointClass::kDropped);
-  auto source = placed.source_index.begin();
-  forEachTilePoint(map.map(), placed, res_g, [&](const Tile* tile, std::size_t column, float z) {
-    const bool dynamic = tile != nullptr && map.isDynamic(*tile, column, z);
-    classes[*source++] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-  });
+  forEachTileRun(
+      map.map(), placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+          const bool dynamic = tile != nullptr && map.isDynamic(*tile, column, placed.z[i]);
+          classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
+        }
+      });
   return classes;
 }
 
