@@ -202,8 +202,13 @@ void CloudInput::deliverFromTf(const Cloud::ConstPtr& cloud) {
 
 void CloudInput::failedInTf(const Cloud::ConstPtr& cloud,
                             tf2_ros::filter_failure_reasons::FilterFailureReason reason) {
-  takeReceived(cloud.get());
   std::string problem = explainTf(*cloud);
+  if (problem.empty()) {
+    // The filter gave up just when tf came.
+    deliverFromTf(cloud);
+    return;
+  }
+  takeReceived(cloud.get());
   if (reason == tf2_ros::filter_failure_reasons::OutTheBack) {
     problem +=
         "; the cloud is older than what tf remembers (30 s): is it stamped by another clock?";
@@ -237,8 +242,7 @@ std::string CloudInput::explainTf(const Cloud& cloud) const {
     }
     return text;
   }
-  return "the queue of clouds that wait for tf is full; ~queue_size is " +
-         std::to_string(options_.queue_size);
+  return {};
 }
 
 void CloudInput::warnOfLatePoses() {

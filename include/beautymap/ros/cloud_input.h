@@ -74,6 +74,7 @@ class CloudInput {
   std::optional<PosedCloud> poseFromOdometry(const Cloud::ConstPtr& cloud, std::string& why);
   Eigen::Isometry3d fromChild(const std::string& frame) const;
   void warnOfLatePoses();
+  /// What tf lacks for a cloud; empty when it knows the poses.
   std::string explainTf(const Cloud& cloud) const;
   Clock::time_point takeReceived(const Cloud* cloud);
   void count(std::uint64_t Counts::*counter, const std::string& problem);
