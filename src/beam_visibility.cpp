@@ -14,11 +14,13 @@ namespace {
 // Nearer columns span so much of the view that a beam image says little about them.
 constexpr float kNearestColumn = 0.5F;  // [m]
 
+constexpr double kRadPerDeg = M_PI / 180.0;
+
 /// How far a point that a scan measured at a range may be from where it was [m]: one standard
 /// deviation of the scan's pose.
 float poseError(float range, const VisibilityConfig& config) {
   const auto position = static_cast<float>(config.pose_position);
-  const auto turned = range * static_cast<float>(config.pose_rotation * 3.14159265358979 / 180.0);
+  const auto turned = range * static_cast<float>(config.pose_rotation * kRadPerDeg);
   return std::sqrt(position * position + turned * turned);
 }
 
@@ -77,24 +79,35 @@ class ColumnViews {
   int y(std::size_t i) const { return y_[i]; }
   float distance(std::size_t i) const { return distance_[i]; }
   /// @param behind_m  what ends so far behind the column's centre has passed it [m]
-  /// @param around_m  margin around each cell of the column [m]
-  ColumnView at(std::size_t i, const BeamImage& beams, const MatrixConfig& matrix, float behind_m,
-                float around_m = 0.0F) const {
-    const float turn = last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
-    const float last = last_[i] + turn;
+  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m) const {
+    return widerAt(i, beams, behind_m, 0.0F);
+  }
+  /// The same with a margin around each cell of the column.
+  /// @param around_m  [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m, float around_m,
+                const MatrixConfig& matrix) const {
+    const float width = last_[i] + turn(i, beams) - first_[i];
+    const float wider = width * around_m / static_cast<float>(matrix.res_g);
     const float quarter = 0.25F * static_cast<float>(beams.azimuthPixels());
-    const float wider =
-        std::min(quarter, (last - first_[i]) * around_m / static_cast<float>(matrix.res_g));
-    const float bit_slopes = top_slope_[i] - bottom_slope_[i];
-    return {floorToInt(first_[i] - wider),
-            floorToInt(last + wider),
-            BeamImage::limitFor(distance_[i] + behind_m),
-            bottom_slope_[i],
-            bit_slopes,
-            bit_slopes * around_m / static_cast<float>(matrix.res_h)};
+    ColumnView view = widerAt(i, beams, behind_m, std::min(quarter, wider));
+    view.more_slopes = view.bit_slopes * around_m / static_cast<float>(matrix.res_h);
+    return view;
   }
 
  private:
+  /// What is to be added to the last azimuth of a column that lies across the first pixel.
+  float turn(std::size_t i, const BeamImage& beams) const {
+    return last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
+  }
+  ColumnView widerAt(std::size_t i, const BeamImage& beams, float behind_m, float pixels) const {
+    return {floorToInt(first_[i] - pixels),
+            floorToInt(last_[i] + turn(i, beams) + pixels),
+            BeamImage::limitFor(distance_[i] + behind_m),
+            bottom_slope_[i],
+            top_slope_[i] - bottom_slope_[i],
+            0.0F};
+  }
+
   static constexpr std::size_t kCapacity = 64;
   template <typename T>
   using Values = std::array<T, kCapacity>;
@@ -229,7 +242,7 @@ BeamImage::BeamImage(const VisibilityConfig& config)
   // alike.
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
   scale_ = {static_cast<float>(azimuth_pixels_),
-            static_cast<float>(1.0 / std::tan(config.pixel_deg * 3.14159265358979 / 180.0))};
+            static_cast<float>(1.0 / std::tan(config.pixel_deg * kRadPerDeg))};
   slope_pixels_ = static_cast<int>(scale_.slopePixel(PixelScale::kMaxSlope)) + 1;
   farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
   first_slope_ = slope_pixels_;
@@ -303,6 +316,7 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
   BitGrid seen_free = std::move(recycled);
   seen_free.reset(window, 0);
   const float margin = 0.5F * res_g + static_cast<float>(config.margin);
+  const bool pose_is_unsure = config.pose_position > 0.0 || config.pose_rotation > 0.0;
   ColumnViews views;
   BeamSums sums;
   const auto from_sensor = [&](int column, float sensor) {
@@ -314,14 +328,14 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
     for (std::size_t i = 0; i < views.size(); ++i) {
       const float distance = views.distance(i);
       if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
-      const float unsure = poseError(distance, config);
-      const ColumnView view = views.at(i, beams, matrix, margin + unsure);
+      const float unsure = pose_is_unsure ? poseError(distance, config) : 0.0F;
+      const ColumnView view = views.at(i, beams, margin + unsure);
       const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
       if (judged == 0 || !anyBeamPassed(beams, view)) continue;
       Bits free = seenFree(judged, beams, view, config, sums);
-      if (free != 0 && unsure > 0.0F) {
+      if (free != 0 && pose_is_unsure) {
         // The cell may be anywhere around where the pose puts it: all of that must be free.
-        const ColumnView around = views.at(i, beams, matrix, margin + unsure, unsure);
+        const ColumnView around = views.at(i, beams, margin + unsure, unsure, matrix);
         free = seenFree(free, beams, around, config, sums);
       }
       seen_free.at(x, views.y(i)) = free;

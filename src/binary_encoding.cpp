@@ -26,8 +26,9 @@ ColumnWindow regionOfInterest(const PlacedScan& scan, const MatrixConfig& config
 
 ColumnWindow seenRegion(const PlacedScan& scan, const MatrixConfig& config) {
   int reach = 1;
-  for (const ColumnRun& run : scan.runs)
+  for (const ColumnRun& run : scan.runs) {
     reach = std::max({reach, std::abs(run.x), std::abs(run.y)});
+  }
   return windowAround(scan.anchor, std::min(reach, regionReach(config)));
 }
 
