@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <utility>
 
 #include "beautymap/evaluation.h"
 #include "beautymap/map_cleaner.h"
@@ -38,22 +37,6 @@ void printTimes(const char* name, std::vector<double> ms) {
               ms[ms.size() * 99 / 100]);
 }
 
-Classes classesOf(const OnlineMap& map, const Scan& scan) {
-  DroppedPoints dropped;
-  const MatrixConfig& matrix = map.config().matrix;
-  const PlacedScan placed =
-      placeScan(scan, map.zOrigin(), matrix.res_g, map.config().scan, dropped);
-  Classes classes(scan.cloud.size(), PointClass::kDropped);
-  forEachTileRun(
-      map.map(), placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
-        for (std::uint32_t i = run.begin; i < run.end; ++i) {
-          const bool dynamic = map.isDynamic(*tile, column, placed.z[i]);
-          classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-        }
-      });
-  return classes;
-}
-
 void run(const std::vector<LabelledScan>& scans, const Config& config) {
   Score live, finished, offline;
   std::vector<double> hits_ms, free_ms;
@@ -78,7 +61,7 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
   std::size_t points = 0, agreeing = 0;
   for (const LabelledScan& scan : scans) {
     const Classes replayed = cleaner.classify(scan.scan);
-    const Classes online = classesOf(std::as_const(map), scan.scan);
+    const Classes online = map.classify(scan.scan);
     count(scan, replayed, offline);
     count(scan, online, finished);
     points += online.size();

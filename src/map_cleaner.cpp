@@ -59,9 +59,8 @@ void MapCleaner::observe(const ScanView& view) {
 void MapCleaner::estimateGround() {
   StageClock clock(times_);
   estimateCoarseGround(map_, config_.coarse_ground);
-  const float below = static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
   map_.forEachTile([&](ColumnIndex, Tile& tile) {
-    for (float& ground : tile.ground) ground -= below;
+    for (float& ground : tile.ground) ground -= judgement_.belowGround();
   });
   clock.lap("coarse_ground");
 }
@@ -199,16 +198,7 @@ std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
 
 void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) const {
   StageClock clock(view.times);
-  classes.assign(view.placed.cloud_size, PointClass::kDropped);
-  const PlacedScan& placed = view.placed;
-  forEachTileRun(map_, placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
-    // Most columns have no dynamic cell: nothing of them is removed.
-    const bool judged = tile != nullptr && tile->dynamic[column] != 0;
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const bool dynamic = judged && judgement_.isDynamic(*tile, column, placed.z[i]);
-      classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-    }
-  });
+  judgement_.classify(map_, view.placed, classes);
   clock.lap("classifying");
 }
 

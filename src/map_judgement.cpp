@@ -148,6 +148,19 @@ bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z, Bits
   return (dynamic >> bit & 1) != 0 || (ground_bins > 0 && bin >= ground_bins);
 }
 
+void MapJudgement::classify(const TileMap& map, const PlacedScan& scan,
+                            std::vector<PointClass>& classes) const {
+  classes.assign(scan.cloud_size, PointClass::kDropped);
+  forEachTileRun(map, scan, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
+    // Most columns have no dynamic cell: nothing of them is removed.
+    const bool judged = tile != nullptr && tile->dynamic[column] != 0;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const bool dynamic = judged && isDynamic(*tile, column, scan.z[i]);
+      classes[scan.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
+    }
+  });
+}
+
 std::vector<ColumnIndex> tilesOf(const TileMap& map) {
   std::vector<ColumnIndex> tiles;
   tiles.reserve(map.tileCount());

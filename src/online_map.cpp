@@ -66,7 +66,7 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
   clock.lap("evidence");
   settle();
   clock.lap("agreement");
-  classify(scan);
+  classifyLive();
   clock.lap("classifying");
   return classes_;
 }
@@ -108,7 +108,7 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
   const HeightGrid lowest =
       map_.extract({{index.x * Tile::kSide - r, index.y * Tile::kSide - r}, Tile::kSide + 2 * r},
                    &Tile::lowest, Tile::kNoHeight);
-  const float below = static_cast<float>(config_.matrix.bits_below * config_.matrix.res_h);
+  const float below = judgement_.belowGround();
   const auto anchor = [&](std::size_t column, float ground) {
     if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {
       // Another cell is the ground's now, and what was taken for ground may be an object.
@@ -171,10 +171,8 @@ void OnlineMap::addSeenFree() {
   // Two halves of the columns, for a thread each.
   const int middle = hits_.size() / 2;
   for (Half& half : halves_) half.candidates.reset(hits_.window(), 0);
-  ground_.reset(hits_.window(), Tile::kNoHeight);
   forEachColumn(std::as_const(map_), hits_.window(),
                 [&](int x, int y, const Tile& tile, std::size_t column) {
-                  ground_.at(x, y) = tile.ground[column];
                   if (tile.ground[column] == Tile::kNoHeight) return;
                   halves_[x < middle ? 0 : 1].candidates.at(x, y) =
                       (tile.occupied[column] | remembered) & ~hits_.at(x, y);
@@ -260,11 +258,19 @@ void OnlineMap::findDynamicInScan() {
   growObjects(cells, dynamic_in_scan_, config_.matrix.bits_below, agreement);
 }
 
-void OnlineMap::classify(const Scan& scan) {
+std::vector<PointClass> OnlineMap::classify(const Scan& scan) const {
+  DroppedPoints dropped;
+  const PlacedScan placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, dropped);
+  std::vector<PointClass> classes;
+  judgement_.classify(map_, placed, classes);
+  return classes;
+}
+
+void OnlineMap::classifyLive() {
   findDynamicInScan();
   const BitGrid& grown = dynamic_in_scan_;
   const ColumnIndex corner = grown.window().corner;
-  classes_.assign(scan.cloud.size(), PointClass::kDropped);
+  classes_.assign(placed_.cloud_size, PointClass::kDropped);
   forEachTileRun(
       std::as_const(map_), placed_,
       [&](const Tile* tile, std::size_t column, const ColumnRun& run) {

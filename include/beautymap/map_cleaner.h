@@ -17,12 +17,6 @@
 
 namespace beautymap {
 
-enum class PointClass : std::uint8_t {
-  kStatic,
-  kDynamic,
-  kDropped,  ///< not part of the map: not finite, zero, or out of range
-};
-
 /// What one scan says about the map, and the memory to find it out; used again for other scans.
 struct ScanView {
   PlacedScan placed;

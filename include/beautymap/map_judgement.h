@@ -12,6 +12,12 @@
 
 namespace beautymap {
 
+enum class PointClass : std::uint8_t {
+  kStatic,
+  kDynamic,
+  kDropped,  ///< not part of the map: not finite, zero, or out of range
+};
+
 /// What the state of the map says about its cells and points: the part of the method that needs no
 /// scan at hand. Works on any tiles, all of them or those that changed, in this order:
 /// judgeEvidence, judgeAgreement, segmentGround.
@@ -19,6 +25,8 @@ class MapJudgement {
  public:
   explicit MapJudgement(const Config& config);
 
+  /// How far bit 0 of a column lies below its coarse ground [m].
+  float belowGround() const { return below_ground_; }
   /// How many bins per column a TileMap needs for the heights near the ground.
   int fineBins() const;
 
@@ -45,6 +53,9 @@ class MapJudgement {
                  int ground_bins) const;
   int groundBins(const Tile& tile, std::size_t column, Bits dynamic) const;
 
+  /// Sets one class per point of the scan's cloud.
+  void classify(const TileMap& map, const PlacedScan& scan, std::vector<PointClass>& classes) const;
+
  private:
   bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
@@ -63,7 +74,7 @@ class MapJudgement {
   Config config_;
   BinaryEncoding encoding_;
   GroundLayer ground_layer_;
-  float below_ground_;  ///< depth of bit 0 below the coarse ground [m]
+  float below_ground_;
 };
 
 /// All tiles of a map.

@@ -45,6 +45,9 @@ class OnlineMap {
   bool isDynamic(const Tile& tile, std::size_t column, float z) const {
     return judgement_.isDynamic(tile, column, z);
   }
+  /// What the map says, as of settle(), about the points of any scan.
+  /// @return one class per point of its cloud
+  std::vector<PointClass> classify(const Scan& scan) const;
 
   const Config& config() const { return config_; }
   const TileMap& map() const { return map_; }
@@ -68,7 +71,7 @@ class OnlineMap {
   void addEvidence(const BitGrid& cells, bool hit);
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
   void findDynamicInScan();
-  void classify(const Scan& scan);
+  void classifyLive();
 
   Config config_;
   MapJudgement judgement_;

@@ -60,20 +60,7 @@ double shareOf(const LabelledScan& labelled, const Classes& classes, PointClass 
 /// What the map says now about the points of a scan.
 Classes classesOf(OnlineMap& map, const Scan& scan) {
   map.settle();
-  DroppedPoints dropped;
-  const PlacedScan placed =
-      placeScan(scan, map.zOrigin(), map.config().matrix.res_g, map.config().scan, dropped);
-  Classes classes(scan.cloud.size(), PointClass::kDropped);
-  forEachTileRun(std::as_const(map.map()), placed,
-                 [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
-                   for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                     classes[placed.source_index[i]] =
-                         tile != nullptr && map.isDynamic(*tile, column, placed.z[i])
-                             ? PointClass::kDynamic
-                             : PointClass::kStatic;
-                   }
-                 });
-  return classes;
+  return map.classify(scan);
 }
 
 double staticShare(const Classes& classes) {

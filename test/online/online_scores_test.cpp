@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "beautymap/evaluation.h"
@@ -43,21 +42,6 @@ std::vector<LabelledScan> simulate(const std::string& scene, const std::string& 
   return scans;
 }
 
-std::vector<PointClass> classesOf(const OnlineMap& map, const Scan& scan) {
-  DroppedPoints dropped;
-  const double res_g = map.config().matrix.res_g;
-  const PlacedScan placed = placeScan(scan, map.zOrigin(), res_g, map.config().scan, dropped);
-  std::vector<PointClass> classes(scan.cloud.size(), PointClass::kDropped);
-  forEachTileRun(
-      map.map(), placed, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
-        for (std::uint32_t i = run.begin; i < run.end; ++i) {
-          const bool dynamic = tile != nullptr && map.isDynamic(*tile, column, placed.z[i]);
-          classes[placed.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
-        }
-      });
-  return classes;
-}
-
 void count(const LabelledScan& scan, const std::vector<PointClass>& classes, Score& score) {
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const bool kept = classes[i] == PointClass::kStatic;
@@ -83,7 +67,7 @@ void expectScoresOfAReplay(const std::string& scene, const std::string& sensor) 
   cleaner.segmentGround();
   Score online, replay;
   for (const LabelledScan& scan : scans) {
-    count(scan, classesOf(std::as_const(map), scan.scan), online);
+    count(scan, map.classify(scan.scan), online);
     count(scan, cleaner.classify(scan.scan), replay);
   }
   EXPECT_GT(replay.dynamic_points, 1000U);
