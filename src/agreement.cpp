@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/agreement.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -106,6 +107,25 @@ BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits) {
   return noise;
 }
 
+BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
+  BitGrid noise(window.suspected.window(), 0);
+  const Bits overhead = ~lowBits(std::min(ground_bit + config.overhead_bits, kMaxBits));
+  for (int x = 1; x + 1 < window.suspected.size(); ++x) {
+    for (int y = 1; y + 1 < window.suspected.size(); ++y) {
+      const Bits cells = window.suspected.at(x, y) & overhead;
+      if (cells == 0) continue;
+      Bits near = 0;
+      for (const Bits column : around(window.suspected, x, y)) near |= column;
+      Bits thicker = config.surface_bits == 0 ? cells : Bits{0};
+      for (int n = config.surface_bits + 1; n <= 2 * config.surface_bits; ++n) {
+        thicker |= near << n | near >> n;
+      }
+      noise.at(x, y) = cells & ~thicker;
+    }
+  }
+  return noise;
+}
+
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
   struct Column {
@@ -136,6 +156,7 @@ BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const Agreeme
   BitGrid dynamic = window.suspected;
   excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
   excludeCells(dynamic, surfaceNoise(window, config.surface_bits));
+  excludeCells(dynamic, overheadNoise(window, ground_bit, config));
   growObjects(window, dynamic, ground_bit, config);
   return dynamic;
 }

@@ -30,6 +30,13 @@ BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
 /// @return  for the columns one in from the window's border; no bits at the border
 BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits);
 
+/// The suspected cells that are but the noise of a surface overhead (a ceiling, a roof), which
+/// beams graze: overhead_bits above the ground cell or higher, and nothing is suspected in their
+/// column and those around from surface_bits + 1 to twice surface_bits below and above them. What
+/// moves up there is thicker.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
+
 /// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
 /// object: a share of their occupied neighbours is dynamic (a larger one for unknown cells, of
 /// which nothing says that they moved), and they do not rest on a cell that stays (what is seen

@@ -200,6 +200,7 @@ struct AgreementConfig {
   double unknown_share = 0.5;
   int join_rounds = 8;
   int surface_bits = 2;
+  int overhead_bits = 10;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -214,6 +215,9 @@ struct AgreementConfig {
       "how far an object grows over leaning and unknown cells");
     v("surface_bits", surface_bits, 0, 16, "bits",
       "that many dynamic cells upon one that stays, with none above them, are its noise");
+    v("overhead_bits", overhead_bits, 0, 64, "bits",
+      "that high above ground such a layer is noise also where it hangs free, with no other "
+      "dynamic cells below and above it: a ceiling, a roof");
   }
 };
 

@@ -259,6 +259,34 @@ TEST(Agreement, WhatReachesHigherOrTouchesNothingIsNoNoise) {
   EXPECT_EQ(countOf(surfaceNoise(window, 2)), 0);
 }
 
+TEST(Agreement, ThinLayersOverheadAreNoise) {
+  const AgreementConfig config;  // two bits thick, ten bits above the ground
+  const int high = kGround + config.overhead_bits;
+  EvidenceWindow window = emptyWindow(9);
+  setSuspected(window, {2, 6, 2, 6, high, high + 1});
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, config)), 5 * 5 * 2);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), 0);
+  // What moves below it is as thick as before, and no reason to remove the ceiling.
+  setSuspected(window, {3, 4, 3, 4, kGround + 1, high - 5});
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, config)), 5 * 5 * 2);
+  // A bus, of which beams missed the middle.
+  window = emptyWindow(9);
+  setSuspected(window, {2, 6, 2, 6, high - 3, high - 3});
+  setSuspected(window, {2, 6, 2, 6, high, high});
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, config)), 0);
+  // Lower layers may be the far parts of objects.
+  window = emptyWindow(9);
+  setSuspected(window, {2, 6, 2, 6, high - 1, high - 1});
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, config)), 0);
+  AgreementConfig off;
+  off.surface_bits = 0;
+  setSuspected(window, {2, 6, 2, 6, high, high});
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, off)), 0);
+  off = config;
+  off.overhead_bits = 64;
+  EXPECT_EQ(countOf(overheadNoise(window, kGround, off)), 0);
+}
+
 /// The rule of noise, one cell after the other.
 bool isNoise(const EvidenceWindow& window, int x, int y, int bit, int surface_bits) {
   int height = 0;  // of the cell above the surface that stays
