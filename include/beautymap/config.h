@@ -106,7 +106,7 @@ struct GroundLayerConfig {
   bool enabled = true;
   double bin_height = 0.05;
   double search_height = 0.4;
-  double max_thickness = 0.2;
+  double max_thickness = 0.15;
   double tail_share = 0.1;
   double min_low_peak = 0.25;
   double min_contrast = 4.0;
@@ -133,11 +133,11 @@ struct GroundLayerConfig {
 
 struct VisibilityConfig {
   double max_range = 80.0;
-  double blind_radius = 1.0;
+  double blind_radius = 0.5;
   double pixel_deg = 0.2;
   int min_beams = 2;
   double min_share = 0.8;
-  double margin = 0.3;
+  double margin = 0.2;
   double pose_position = 0.0;
   double pose_rotation = 0.0;
 
@@ -153,8 +153,7 @@ struct VisibilityConfig {
     v("margin", margin, 0.0, 5.0, "m", "a beam passed when it ended that far behind the cell");
     v("pose_position", pose_position, 0.0, 2.0, "m",
       "standard deviation of a scan's position, if known: cells are seen free only with that "
-      "margin "
-      "around them");
+      "margin around them");
     v("pose_rotation", pose_rotation, 0.0, 10.0, "deg",
       "standard deviation of a scan's rotation, if known: the same, growing with the range");
   }

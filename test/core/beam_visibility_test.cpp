@@ -168,6 +168,7 @@ struct View {
 
 TEST(CellsSeenFree, InFrontOfAWallNotBehindItAndNotInItsMargin) {
   View view;
+  view.config.margin = 0.3;
   view.addWall(10.0, -15.0, 15.0, -0.1, 0.1);
   EXPECT_TRUE(view.seesFree(10, 0, 0.0));
   EXPECT_TRUE(view.seesFree(18, 0, 0.0));
@@ -280,6 +281,7 @@ TEST(CellsSeenFree, AStatedPositionErrorWidensTheCell) {
 
 TEST(CellsSeenFree, AStatedPoseErrorWidensTheMargin) {
   View view;
+  view.config.margin = 0.3;
   view.addWall(10.0, -25.0, 25.0, -0.2, 0.2);
   EXPECT_TRUE(view.seesFree(18, 0, 0.0));
   view.config.pose_position = 0.5;
