@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "beautymap/cell_size.h"
 #include "beautymap/config.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
@@ -48,7 +49,9 @@ int runOnLabelledScans(const char* name, int argc, char** argv, F run) {
   try {
     Config config;
     for (int i = 2; i < argc; ++i) setParameter(config, argv[i]);
-    run(readLabelledScans(argv[1]), config);
+    const std::vector<LabelledScan> scans = readLabelledScans(argv[1]);
+    config.matrix.res_g = cellSizeFor(scans.front().scan, config).value_or(config.matrix.res_g);
+    run(scans, config);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return 2;

@@ -62,7 +62,7 @@ def whole_runs(folder):
     runs = []
     for path in sorted(folder.glob("runs/*/*/report.json")):
         report = json.loads(path.read_text())
-        tile_m2 = COLUMNS_PER_TILE * report["config"]["matrix"]["res_g"] ** 2
+        tile_m2 = COLUMNS_PER_TILE * report["matrix"]["cell_size_m"] ** 2
         runs.append({
             "input": path.parts[-3],
             "config": path.parts[-2],

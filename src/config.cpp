@@ -14,6 +14,8 @@
 #include <sstream>
 #include <type_traits>
 
+#include "beautymap/cell_size.h"
+
 namespace beautymap {
 namespace {
 
@@ -208,9 +210,14 @@ void checkConfig(const Config& config) {
                       " must be less than scan.max_range = " + text(config.scan.max_range));
   }
   constexpr double kMaxColumns = 2000;  // of a window's side: 32 MB for each of its matrices
-  if (config.matrix.roi_size / config.matrix.res_g > kMaxColumns) {
+  if (config.matrix.room_res_g > 0.0 && config.matrix.room_res_g < 0.05) {
+    throw ConfigError("matrix.room_res_g = " + text(config.matrix.room_res_g) +
+                      " must be 0 or at least 0.05");
+  }
+  const double smallest = cellSizeInRoom(config.matrix);
+  if (config.matrix.roi_size / smallest > kMaxColumns) {
     throw ConfigError("matrix.roi_size = " + text(config.matrix.roi_size) + " must be at most " +
-                      text(kMaxColumns) + " cells of matrix.res_g = " + text(config.matrix.res_g));
+                      text(kMaxColumns) + " cells of " + text(smallest) + " m");
   }
   if (config.matrix.bits_below >= config.matrix.n_bit) {
     throw ConfigError("matrix.bits_below = " + text(config.matrix.bits_below) +

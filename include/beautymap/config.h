@@ -30,6 +30,8 @@ struct ScanConfig {
 
 struct MatrixConfig {
   double res_g = 0.5;
+  double room_res_g = 0.15;
+  double room_range = 12.0;
   double res_h = 0.2;
   int n_bit = 64;
   int bits_below = 8;
@@ -38,6 +40,10 @@ struct MatrixConfig {
   template <typename Visitor>
   void describe(Visitor& v) {
     v("res_g", res_g, 0.05, 10.0, "m", "horizontal size of a cell");
+    v("room_res_g", room_res_g, 0.0, 10.0, "m",
+      "the same in a room, if that is smaller; 0: no difference");
+    v("room_range", room_range, 0.0, 1000.0, "m",
+      "a room is where nine of ten points of the first scan are no farther");
     v("res_h", res_h, 0.02, 5.0, "m", "height of one bit of a column");
     v("n_bit", n_bit, 2, 64, "bits",
       "bits of a column; whatever is higher than n_bit * res_h above ground counts as the top bit");
@@ -181,8 +187,7 @@ struct EvidenceConfig {
     v("order_ratio", order_ratio, 0.0, 100.0, "", "and there in more than this times its hits");
     v("strong_ratio", strong_ratio, 0.0, 100.0, "",
       "evidence is strong when a cell was seen free before its first and after its last hit in "
-      "more "
-      "than this times its hits");
+      "more than this times its hits");
     v("leaning_ratio", leaning_ratio, 0.0, 100.0, "",
       "a cell leans to dynamic when it was seen free there at least once and in this times its "
       "hits");

@@ -15,14 +15,17 @@ using Mode = tbb::filter;
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <future>
 #include <limits>
+#include <optional>
 #include <thread>
 #include <unordered_set>
 #include <utility>
 
+#include "beautymap/cell_size.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
 #include "beautymap/io/pcd_header.h"
@@ -120,14 +123,32 @@ class PointFile {
   std::unordered_set<std::uint64_t> voxels_;
 };
 
+/// The first scans, up to one that says what size the cells should have.
+std::deque<SourceScan> readAhead(ScanSource& source, Config& config) {
+  constexpr std::size_t kMost = 10;
+  std::deque<SourceScan> scans;
+  SourceScan read;
+  while (scans.size() < kMost && source.next(read)) {
+    scans.push_back(read);
+    Scan scan;
+    convertScan(read, scan);
+    const std::optional<double> size = cellSizeFor(scan, config);
+    if (!size) continue;
+    config.matrix.res_g = *size;
+    break;
+  }
+  return scans;
+}
+
 /// The passes over the scans, in their order.
 class OfflineRun {
  public:
-  OfflineRun(ScanSource& source, const Config& config, const OfflineOptions& options,
+  OfflineRun(ScanSource& source, Config config, const OfflineOptions& options,
              const ProgressListener& progress)
       : source_(source),
         options_(options),
         progress_(progress),
+        read_ahead_(readAhead(source, config)),
         cleaner_(config),
         spool_(options.output),
         evaluator_(options.score_radius_m) {}
@@ -156,6 +177,7 @@ class OfflineRun {
   }
 
  private:
+  bool nextScan(SourceScan& scan);
   void observe();
   template <typename Work, typename Use>
   void passOverSpool(const std::string& name, Work work, Use use);
@@ -169,6 +191,7 @@ class OfflineRun {
   ScanSource& source_;
   const OfflineOptions& options_;
   const ProgressListener& progress_;
+  std::deque<SourceScan> read_ahead_;  ///< the first scans, until observe() takes them
   MapCleaner cleaner_;
   ScanSpool spool_;
   Evaluator evaluator_;
@@ -179,6 +202,13 @@ class OfflineRun {
   pcl::PCLPointCloud2 output_layout_;
 };
 
+bool OfflineRun::nextScan(SourceScan& scan) {
+  if (read_ahead_.empty()) return source_.next(scan);
+  scan = std::move(read_ahead_.front());
+  read_ahead_.pop_front();
+  return true;
+}
+
 void OfflineRun::observe() {
   progress_.begin("reading", source_.size());
   const auto skip = [&](const std::string& reason, const std::string& example) {
@@ -187,7 +217,7 @@ void OfflineRun::observe() {
   };
   runPipeline(
       [&](ReadScan& read) {
-        if (!source_.next(read.source)) return false;
+        if (!nextScan(read.source)) return false;
         cleaner_.startAt(read.source.T_map_sensor.translation());
         return true;
       },
@@ -248,6 +278,7 @@ void OfflineRun::passOverSpool(const std::string& name, Work work, Use use) {
 void OfflineRun::write() {
   const Extent extent = extentOf(cleaner_);
   report_.float64_coordinates = extent.largest > kMaxFloat32Coordinate;
+  report_.cell_size_m = cleaner_.config().matrix.res_g;
   report_.tiles = cleaner_.map().tileCount();
   report_.matrix_memory_mb = static_cast<double>(cleaner_.map().memoryBytes()) / 1048576.0;
   top_view_ = std::make_unique<TopView>(extent.low, extent.high - extent.low);

@@ -39,7 +39,9 @@ std::string toJson(const OfflineReport& report, const Config& config) {
     json["stages_ms"][stage.first] = stage.second / scans;
   }
   json["peak_memory_mb"] = report.peak_memory_mb;
-  json["matrix"] = {{"tiles", report.tiles}, {"memory_mb", report.matrix_memory_mb}};
+  json["matrix"] = {{"cell_size_m", report.cell_size_m},
+                    {"tiles", report.tiles},
+                    {"memory_mb", report.matrix_memory_mb}};
   json["coordinates"] = report.float64_coordinates ? "float64" : "float32";
   if (report.score) {
     const Score& s = *report.score;

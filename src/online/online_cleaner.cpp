@@ -9,6 +9,7 @@
 #include <future>
 #include <thread>
 
+#include "beautymap/cell_size.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_conversion.h"
@@ -45,8 +46,9 @@ class OnlineCleaner::ReaderLock {
 };
 
 OnlineCleaner::OnlineCleaner(const Config& config, std::string folder)
-    : folder_(std::move(folder)),
-      map_(withinRadius(config)),
+    : config_(withinRadius(config)),
+      folder_(std::move(folder)),
+      map_(config_),
       points_(config.matrix.res_g, config.online.map_voxel) {
   if (config.online.radius <= 0.0) return;
   std::error_code error;
@@ -72,14 +74,23 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
   const std::lock_guard<std::mutex> lock(mutex_);
   --scans_waiting_;
   if (!started_) {
+    setCellSize(cellSizeFor(scan, config_).value_or(config_.matrix.res_g));
     float64_ =
         scan.sensor_in_map.cwiseAbs().maxCoeff() + config().scan.max_range > kMaxFloat32Coordinate;
   }
   if (scan.sensor_in_map.allFinite()) fetchNear(scan.sensor_in_map);
   const auto& classes = map_.addHits(scan);
-  started_ = true;
+  started_ = map_.map().tileCount() > 0;
   settled_ = true;
   return classes;
+}
+
+void OnlineCleaner::setCellSize(double res_g) {
+  if (res_g == config().matrix.res_g) return;
+  Config changed = config_;
+  changed.matrix.res_g = res_g;
+  map_ = OnlineMap(changed);
+  points_ = PointStore(res_g, changed.online.map_voxel);
 }
 
 void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
@@ -155,7 +166,7 @@ void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
 }
 
 TileFileWriter::Header OnlineCleaner::header(const std::string& map_frame) const {
-  return {map_frame, map_.zOrigin(), points_.layout()};
+  return {map_frame, map_.zOrigin(), config().matrix.res_g, points_.layout()};
 }
 
 std::vector<ColumnIndex> OnlineCleaner::tiles() const {
@@ -225,13 +236,13 @@ pcl::PCLPointCloud2 OnlineCleaner::layout() const {
   return points_.layout();
 }
 
-std::pair<BitGrid, BitGrid> OnlineCleaner::bitsAround(double half_side_m) const {
+OnlineCleaner::MatrixView OnlineCleaner::matrixAround(double half_side_m) const {
   const ReaderLock lock(*this);
   lock.settle(*this);
   const int half = std::max(1, static_cast<int>(half_side_m / config().matrix.res_g));
   const ColumnIndex centre = map_.placed().anchor;
   const ColumnWindow window{{centre.x - half, centre.y - half}, 2 * half + 1};
-  return {map_.map().extract(window, &Tile::occupied, Bits{0}),
+  return {config().matrix, map_.map().extract(window, &Tile::occupied, Bits{0}),
           map_.map().extract(window, &Tile::dynamic, Bits{0})};
 }
 
@@ -260,7 +271,8 @@ void OnlineCleaner::saveSession(const std::string& path, const std::string& map_
 
 std::string OnlineCleaner::loadSession(const std::string& path) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  TileFileReader reader(path, config());
+  TileFileReader reader(path, config_);
+  setCellSize(reader.header().res_g);
   map_.setZOrigin(reader.header().z_origin);
   points_.setLayout(reader.header().layout);
   for (const pcl::PCLPointField& field : reader.header().layout.fields) {

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "beautymap/cell_size.h"
 #include "beautymap/io/scan_source.h"
 #include "beautymap/map_judgement.h"
 
@@ -68,7 +69,8 @@ TileFileWriter::TileFileWriter(std::string path, const Header& header, const Con
     write(value.data(), value.size());
   };
   write(kMagic, sizeof(kMagic) - 1);
-  const Meaning meaning = meaningOf(config);
+  Meaning meaning = meaningOf(config);
+  meaning.res_g = header.res_g;
   write(&meaning, sizeof(meaning));
   write(&header.z_origin, sizeof(header.z_origin));
   text(header.map_frame);
@@ -136,7 +138,10 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
   }
   Meaning written;
   read(&written, sizeof(written));
-  const Meaning wanted = meaningOf(config);
+  header_.res_g = written.res_g;
+  Meaning wanted = meaningOf(config);
+  // A session of a room goes on as one, also where the present scans would not say so.
+  if (written.res_g == cellSizeInRoom(config.matrix)) wanted.res_g = written.res_g;
   if (std::memcmp(&written, &wanted, sizeof(wanted)) != 0) {
     throw InputError("'" + path +
                      "' was written with other matrix, ground_layer or fine_ground parameters: go "

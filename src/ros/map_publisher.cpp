@@ -129,8 +129,7 @@ sensor_msgs::PointCloud2Ptr MapPublisher::assemble(
 }
 
 void MapPublisher::publishMatrix(const OnlineCleaner& cleaner, const std::string& frame) {
-  const auto [occupied, dynamic] = cleaner.bitsAround(0.5 * matrix_size_m_);
-  const MatrixConfig& matrix = cleaner.config().matrix;
+  const auto [matrix, occupied, dynamic] = cleaner.matrixAround(0.5 * matrix_size_m_);
   const ColumnWindow& window = occupied.window();
   nav_msgs::OccupancyGrid grid;
   grid.header.frame_id = frame;

@@ -12,7 +12,7 @@ using namespace beautymap;
 
 namespace {
 
-void printReport(const OfflineReport& report, const std::string& output) {
+void printReport(const OfflineReport& report, double res_g, const std::string& output) {
   const DroppedPoints& dropped = report.dropped_points;
   std::printf("%zu scans, %llu points: %llu static, %llu dynamic, %llu dropped\n", report.scans,
               static_cast<unsigned long long>(report.points),
@@ -30,6 +30,10 @@ void printReport(const OfflineReport& report, const std::string& output) {
   }
   if (report.float64_coordinates) {
     std::printf("the coordinates are too large for float32: x, y, z are written as float64\n");
+  }
+  if (report.cell_size_m < res_g) {
+    std::printf("the first scan shows a room: cells of %g m (matrix.room_res_g)\n",
+                report.cell_size_m);
   }
   if (report.score) {
     std::printf("SA %.2f DA %.2f AA %.2f HA %.2f\n", report.score->SA(), report.score->DA(),
@@ -87,6 +91,6 @@ int main(int argc, char** argv) {
     const OfflineReport report = cleanOffline(*source, config, options, listener);
     progress.reset();
     printSkipped(*source);
-    printReport(report, options.output);
+    printReport(report, config.matrix.res_g, options.output);
   });
 }

@@ -31,6 +31,7 @@ Config testConfig() {
   config.evidence.enabled = false;
   config.matrix.bits_below = 0;
   config.matrix.res_g = 1.0;
+  config.matrix.room_res_g = 0.0;
   config.matrix.res_h = 0.5;
   config.fine_ground.bin_height = 0.125;
   return config;
@@ -216,6 +217,24 @@ TEST(OfflineCleaner, TheReportSaysWhatWasDoneAndWithWhichParameters) {
   EXPECT_EQ(json.at("config").at("matrix").at("res_g"), 1.0);
   EXPECT_EQ(json.at("config").at("coarse_ground").at("enabled"), true);
   EXPECT_EQ(json.at("coordinates"), "float32");
+}
+
+TEST(OfflineCleaner, ARoomHasSmallerCells) {
+  Scan room;
+  for (int i = 0; i < 1000; ++i) {
+    const float angle = 0.00628F * static_cast<float>(i);
+    room.cloud.emplace_back(4.0F * std::cos(angle), 4.0F * std::sin(angle), 0.0F);
+  }
+  const OutputFolder folder;
+  const Config config;
+  MemorySource source({test::sourceScan(Scan(), 0), test::sourceScan(room, 0)});
+  const OfflineReport report = run(source, into(folder), nullptr, config);
+  EXPECT_EQ(report.scans, 2U);
+  EXPECT_EQ(report.static_points, 1000U);
+  EXPECT_EQ(report.cell_size_m, config.matrix.room_res_g);
+  const auto json = nlohmann::json::parse(test::bytesOf(folder.file("report.json")));
+  EXPECT_EQ(json.at("matrix").at("cell_size_m"), config.matrix.room_res_g);
+  EXPECT_EQ(json.at("config").at("matrix").at("res_g"), config.matrix.res_g) << "as it was given";
 }
 
 TEST(OfflineCleaner, ReadsTheSourceOnce) {

@@ -23,18 +23,20 @@ namespace {
 using test::TempFolder;
 using Records = std::vector<std::vector<std::uint8_t>>;
 
+std::vector<SourceScan> simulate(const std::string& scene, int scans) {
+  simulation::SimulationOptions options;
+  options.scene = scene;
+  options.sensor = "vlp16";
+  options.scans = scans;
+  options.seed = 4;
+  simulation::SimulatedSource source(options);
+  std::vector<SourceScan> all(static_cast<std::size_t>(options.scans));
+  for (SourceScan& scan : all) source.next(scan);
+  return all;
+}
+
 const std::vector<SourceScan>& street() {
-  static const std::vector<SourceScan> scans = [] {
-    simulation::SimulationOptions options;
-    options.scene = "street";
-    options.sensor = "vlp16";
-    options.scans = 30;
-    options.seed = 4;
-    simulation::SimulatedSource source(options);
-    std::vector<SourceScan> all(static_cast<std::size_t>(options.scans));
-    for (SourceScan& scan : all) source.next(scan);
-    return all;
-  }();
+  static const std::vector<SourceScan> scans = simulate("street", 30);
   return scans;
 }
 
@@ -147,6 +149,33 @@ TEST(OnlineCleaner, ALoadedSessionGoesOnAsIfNothingHadHappened) {
   EXPECT_EQ(saved(second), saved(whole));
 }
 
+TEST(OnlineCleaner, ARoomHasSmallerCellsAlsoWhenItsSessionGoesOn) {
+  const Config config;
+  const std::vector<SourceScan> stairs = simulate("stairs", 10);
+  const auto sizeOf = [](const OnlineCleaner& cleaner) {
+    return cleaner.matrixAround(5.0).config.res_g;
+  };
+  OnlineCleaner outside(config, "");
+  add(outside, street(), 0, 1);
+  add(outside, stairs, 0, 1);
+  EXPECT_EQ(sizeOf(outside), config.matrix.res_g) << "the first scan decides";
+  OnlineCleaner whole(config, ""), first(config, ""), second(config, "");
+  SourceScan empty = stairs.front();
+  empty.cloud.width = 0;
+  empty.cloud.data.clear();
+  whole.add(empty);
+  whole.finish(empty);
+  add(whole, stairs);
+  EXPECT_EQ(sizeOf(whole), config.matrix.room_res_g) << "the first scan with points";
+  const TempFolder folder;
+  add(first, stairs, 0, 5);
+  first.saveSession(folder / "half.session", "odom");
+  second.loadSession(folder / "half.session");
+  EXPECT_EQ(sizeOf(second), config.matrix.room_res_g);
+  add(second, stairs, 5);
+  EXPECT_EQ(saved(second), saved(whole));
+}
+
 TEST(OnlineCleaner, SessionsThatCannotBeContinuedAreRefused) {
   const TempFolder folder;
   OnlineCleaner cleaner(Config(), "");
@@ -217,7 +246,7 @@ TEST(OnlineCleaner, TheMapIsLookedAtWhileItGrows) {
         points += view.cleaned.size() + view.removed.size();
       }
       most = std::max(most, points);
-      cleaner.bitsAround(20.0);
+      cleaner.matrixAround(20.0);
       cleaner.size();
     }
   });

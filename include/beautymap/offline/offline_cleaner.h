@@ -34,6 +34,7 @@ struct OfflineReport {
   StageTimes stages;     ///< time of each stage over all scans [ms]
   double seconds = 0.0;  ///< whole run
   double peak_memory_mb = 0.0;
+  double cell_size_m = 0.0;  ///< horizontally: matrix.res_g or room_res_g
   double matrix_memory_mb = 0.0;
   std::size_t tiles = 0;
   bool float64_coordinates = false;

@@ -55,8 +55,12 @@ class OnlineCleaner {
   bool look(ColumnIndex tile, TileView& view) const;
   /// Fields and point_step of the records, no points.
   pcl::PCLPointCloud2 layout() const;
-  /// The occupied and the dynamic bits of all columns in a window around the last sensor position.
-  std::pair<BitGrid, BitGrid> bitsAround(double half_side_m) const;
+  /// The columns in a window around the last sensor position.
+  struct MatrixView {
+    MatrixConfig config;
+    BitGrid occupied, dynamic;
+  };
+  MatrixView matrixAround(double half_side_m) const;
 
   /// Writes the whole state, so that load() can go on with it.
   void saveSession(const std::string& path, const std::string& map_frame) const;
@@ -73,10 +77,13 @@ class OnlineCleaner {
   DroppedPoints dropped() const;
   /// Time of each stage over all scans.
   StageTimes times() const;
-  const Config& config() const { return map_.config(); }
 
  private:
   class ReaderLock;
+  /// With the size of the cells that the place asks for.
+  const Config& config() const { return map_.config(); }
+  /// Before the map holds anything.
+  void setCellSize(double res_g);
   void fetchNear(const Eigen::Vector3d& sensor);
   void storeFar(const Eigen::Vector3d& sensor);
   double distance(ColumnIndex tile, const Eigen::Vector3d& sensor) const;
@@ -84,6 +91,7 @@ class OnlineCleaner {
   void fetch(ColumnIndex index, Tile& tile, TilePoints& points) const;
   TileFileWriter::Header header(const std::string& map_frame) const;
 
+  Config config_;  ///< as it was given
   std::string folder_;
   mutable OnlineMap map_;        ///< changed by those who look only to judge what is not yet
   mutable bool settled_ = true;  ///< everything in the map is judged

@@ -20,6 +20,7 @@ class TileFileWriter {
   struct Header {
     std::string map_frame;
     double z_origin = 0.0;
+    double res_g = 0.0;          ///< the cells' size: that of the configuration, or in a room
     pcl::PCLPointCloud2 layout;  ///< of the points' records
   };
 
