@@ -43,15 +43,17 @@ void MapCleaner::observe(const ScanView& view) {
   StageClock clock(times_);
   dropped_ += view.dropped;
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
-    float lowest = Tile::kNoHeight;
+    float lowest = Tile::kNoHeight, highest = -Tile::kNoHeight;
     Bits heights = 0;
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const float z = view.placed.z[i];
       lowest = std::min(lowest, z);
+      highest = std::max(highest, z);
       heights |= height_bins_.bin(z);
     }
     tile->lowest[column] = std::min(tile->lowest[column], lowest);
-    tile->heights[column] |= heights;
+    tile->highest[column] = std::max(tile->highest[column], highest);
+    tile->possible[column] |= heights;
   });
   clock.lap("coarse_ground");
 }
@@ -61,8 +63,29 @@ void MapCleaner::estimateGround() {
   estimateCoarseGround(map_, config_.coarse_ground);
   map_.forEachTile([&](ColumnIndex, Tile& tile) {
     for (float& ground : tile.ground) ground -= judgement_.belowGround();
+    if (config_.evidence.enabled) findPossibleCells(tile);
   });
   clock.lap("coarse_ground");
+}
+
+void MapCleaner::findPossibleCells(Tile& tile) const {
+  const int ground_bit = config_.matrix.bits_below;
+  for (std::size_t column = 0; column < Tile::kColumns; ++column) {
+    const float ground = tile.ground[column];
+    const int lowest = encoding_.bitIndex(tile.lowest[column], ground);
+    const int highest = encoding_.bitIndex(tile.highest[column], ground);
+    Bits& possible = tile.possible[column];
+    if (lowest == ground_bit && highest == ground_bit) {
+      // The ground cell alone is never judged, only together with what is above it.
+      tile.flat.set(column);
+      possible = 0;
+      continue;
+    }
+    // That the ground cell was seen free says something about the points above it, also where it
+    // holds none itself.
+    const Bits occupied = lowBits(highest + 1) & ~lowBits(lowest);
+    possible = height_bins_.possibleCells(possible, ground) & (occupied | Bits{1} << ground_bit);
+  }
 }
 
 void MapCleaner::encode(const Scan& scan) {
@@ -138,8 +161,7 @@ void MapCleaner::findFree(ScanView& view) const {
   BitGrid& candidates = view.map.occupied;
   candidates.reset(window, 0);
   forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
-    candidates.at(x, y) =
-        height_bins_.possibleCells(tile.heights[column], tile.ground[column]) & ~view.hit.at(x, y);
+    candidates.at(x, y) = tile.possible[column] & ~view.hit.at(x, y);
   });
   clock.lap("matrix_comparison");
   if (!view.beams) view.beams.emplace(config_.visibility);
@@ -170,6 +192,7 @@ void MapCleaner::addEvidence(const ScanView& view) {
     const Bits free = view.free.at(x, y);
     if ((hit | free) == 0) return;
     tile.occupied[column] |= hit;
+    if (tile.flat[column]) return;  // nothing would ask for it
     tile.evidence.touch(column).observe(hit, free);
   });
   clock.lap("evidence");

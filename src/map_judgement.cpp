@@ -110,6 +110,7 @@ void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const
   const auto bins = static_cast<std::size_t>(map.fineBins());
   const auto count = [&](auto bin_of) {
     forEachTileRun(map, scan, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+      if (tile->flat[column]) return;
       std::uint32_t* counts = &tile->fine_counts[column * bins];
       for (std::uint32_t i = run.begin; i < run.end; ++i) {
         const int bin = bin_of(*tile, column, scan.z[i]);

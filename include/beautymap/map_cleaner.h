@@ -85,6 +85,7 @@ class MapCleaner {
   /// The published judgement of one scan: every candidate it leaves is dynamic.
   void findDynamic(ScanView& view) const;
   /// What one scan saw, for a judgement over all scans.
+  void findPossibleCells(Tile& tile) const;
   void findFree(ScanView& view) const;
   void addEvidence(const ScanView& view);
 

@@ -30,7 +30,8 @@ class MapJudgement {
   /// How many bins per column a TileMap needs for the heights near the ground.
   int fineBins() const;
 
-  /// Counts the heights of a scan's points near the ground of their columns.
+  /// Counts the heights of a scan's points near the ground of their columns; not in columns that
+  /// are known to be flat.
   void countGroundPoints(TileMap& map, const PlacedScan& scan) const;
 
   /// Marks the cells that their own evidence holds for dynamic (Tile::suspected, Tile::strong).

@@ -30,6 +30,7 @@ struct Tile {
   explicit Tile(int fine_bins)
       : fine_counts(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(fine_bins), 0) {
     lowest.fill(kNoHeight);
+    highest.fill(-kNoHeight);
     ground.fill(kNoHeight);
   }
 
@@ -38,7 +39,6 @@ struct Tile {
   std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
   std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
-  std::array<Bits, kColumns> heights{};               ///< HeightBins of all points
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
   std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
   std::array<Bits, kColumns> strong{};   ///< those of the suspected cells with strong evidence
@@ -49,6 +49,12 @@ struct Tile {
       static_bins{};  ///< fine bins of the ground cell that stay; 0: all
   SparseColumns<ColumnEvidence, kColumns> evidence;  ///< of columns that were observed
   std::vector<std::uint32_t> fine_counts;            ///< points per fine bin of the ground cell
+
+  // Of maps of which all points are known before they are judged (MapCleaner).
+  std::array<float, kColumns> highest;    ///< highest point; -kNoHeight: no point
+  std::array<Bits, kColumns> possible{};  ///< cells that can be judged; HeightBins of all points
+                                          ///< until the ground is known
+  std::bitset<kColumns> flat;  ///< columns of which all points lie in the ground cell: all stay
 
   // Of maps that grow (OnlineMap).
   std::bitset<kColumns> stale_ground;  ///< columns whose ground must be estimated again
