@@ -10,11 +10,23 @@
 
 namespace beautymap {
 
+namespace {
+
+float depthBelowGround(const MatrixConfig& config) {
+  // The lowest points are what the ground's height comes from: not even rounding may move them to
+  // the cell below.
+  constexpr double kRounding = 1e-3;  // [m]
+  const double depth = config.bits_below * config.res_h;
+  return static_cast<float>(config.bits_below == 0 ? depth : depth + kRounding);
+}
+
+}  // namespace
+
 MapJudgement::MapJudgement(const Config& config)
     : config_(config),
       encoding_(config.matrix),
       ground_layer_(config.ground_layer, config.matrix.res_h),
-      below_ground_(static_cast<float>(config.matrix.bits_below * config.matrix.res_h)) {}
+      below_ground_(depthBelowGround(config.matrix)) {}
 
 int MapJudgement::fineBins() const {
   return usesGroundLayer() ? ground_layer_.bins()

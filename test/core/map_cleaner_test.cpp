@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/reference_cleaner.h"
@@ -479,6 +480,42 @@ TEST(MapCleanerAblation, TheGroundModuleRemovesPartsOfGroundCells) {
   const int with_module = countOf(cleanedClasses(scans, config), PointClass::kDynamic);
   config.fine_ground.enabled = false;
   EXPECT_GT(with_module, countOf(cleanedClasses(scans, config), PointClass::kDynamic));
+}
+
+TEST(MapCleaner, OnlyCellsThatCanBeJudgedAreLookedAt) {
+  const Config config;
+  Scan scan;
+  scan.sensor_in_map = {0.0, 0.0, 1.5};
+  for (float x = 10.25F; x < 13.0F; x += 0.5F) {
+    for (float y = 0.25F; y < 3.0F; y += 0.5F) {
+      const bool middle = x == 11.25F && y == 1.25F;
+      scan.cloud.emplace_back(x, y, middle ? 0.25F : 0.0F);  // a hole in the floor below a foot
+      if (x == 12.25F) scan.cloud.emplace_back(x, y, 0.95F);
+    }
+  }
+  MapCleaner cleaner(config);
+  cleaner.observe(scan);
+  cleaner.estimateGround();
+  cleaner.compare(scan);
+  const int ground = config.matrix.bits_below;
+  const auto at = [&](double x, double y) {
+    const ColumnIndex column = columnOf({x, y, 0.0}, config.matrix.res_g);
+    return std::make_pair(cleaner.map().findTile(TileMap::tileOf(column)),
+                          static_cast<std::size_t>(TileMap::indexInTile(column)));
+  };
+  const auto [flat, floor] = at(10.25, 0.25);
+  EXPECT_TRUE(flat->flat[floor]);
+  EXPECT_EQ(flat->possible[floor], Bits{0});
+  EXPECT_FALSE(flat->evidence.has(floor));
+  const auto [high, post] = at(12.25, 1.25);
+  EXPECT_FALSE(high->flat[post]);
+  EXPECT_TRUE(high->evidence.has(post));
+  EXPECT_EQ(high->possible[post] & ~lowBits(ground + 5), Bits{0}) << "nothing above the post";
+  EXPECT_EQ(high->possible[post] & lowBits(ground), Bits{0}) << "nothing below the floor";
+  EXPECT_EQ(high->possible[post] & high->occupied[post], high->occupied[post]);
+  // Whether the ground cell was seen free decides what becomes of the points above it.
+  const auto [hole, foot] = at(11.25, 1.25);
+  EXPECT_EQ(hole->possible[foot], Bits{3} << ground);
 }
 
 TEST(MapCleaner, MemoryDoesNotGrowWithTheNumberOfScans) {
