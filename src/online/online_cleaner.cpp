@@ -300,6 +300,7 @@ OnlineCleaner::Size OnlineCleaner::size() const {
   for (const auto& tile : on_disk_) size.points += tile.second;
   size.tiles = map_.map().tileCount() + on_disk_.size();
   size.tiles_on_disk = on_disk_.size();
+  size.cell_m = config().matrix.res_g;
   size.memory_mb =
       static_cast<double>(map_.map().memoryBytes() + points_.memoryBytes()) / 1048576.0;
   return size;

@@ -151,6 +151,7 @@ void BeautyMapRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("scans skipped", totals.skipped + input.out_of_order + input.unusable);
   status.add("tf failures", input.no_pose);
   status.add("points in the map", size.points);
+  status.add("size of the cells [m]", size.cell_m);
   status.add("tiles", size.tiles);
   status.add("tiles on disk", size.tiles_on_disk);
   status.add("memory of the map [MB]", size.memory_mb);

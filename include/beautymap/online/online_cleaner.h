@@ -72,6 +72,7 @@ class OnlineCleaner {
     std::size_t tiles = 0;
     std::size_t tiles_on_disk = 0;
     double memory_mb = 0.0;
+    double cell_m = 0.0;  ///< horizontally, as the place asks for
   };
   Size size() const;
   DroppedPoints dropped() const;
