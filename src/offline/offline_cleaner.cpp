@@ -124,6 +124,7 @@ class PointFile {
 };
 
 /// The first scans, up to one that says what size the cells should have.
+/// @param config  gets that size
 std::deque<SourceScan> readAhead(ScanSource& source, Config& config) {
   constexpr std::size_t kMost = 10;
   std::deque<SourceScan> scans;
