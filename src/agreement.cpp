@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/agreement.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -18,6 +17,12 @@ Neighbourhood around(const BitGrid& grid, int x, int y) {
     for (int dy = -1; dy <= 1; ++dy) columns[n++] = grid.at(x + dx, y + dy);
   }
   return columns;
+}
+
+Bits anyOf(const Neighbourhood& columns) {
+  Bits any = 0;
+  for (const Bits column : columns) any |= column;
+  return any;
 }
 
 /// Set bits within one bit of a bit, in all columns; not the bit itself in the middle.
@@ -42,8 +47,7 @@ Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x
   const Bits unknown = window.unknown.at(x, y) & ~dynamic.at(x, y);
   if ((leaning | unknown) == 0) return 0;
   const Neighbourhood dynamic_around = around(dynamic, x, y);
-  Bits near = 0;
-  for (const Bits column : dynamic_around) near |= column & counted;
+  Bits near = anyOf(dynamic_around) & counted;
   near |= near << 1 | near >> 1;
   if (((leaning | unknown) & near) == 0) return 0;
   const Neighbourhood occupied = around(window.occupied, x, y);
@@ -95,8 +99,7 @@ BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits) {
       const Bits staying = window.occupied.at(x, y) & ~suspected & ~window.leaning.at(x, y);
       Bits layer = suspected & staying << 1;  // n bits above a surface's first one
       if (layer == 0) continue;
-      Bits near = 0;
-      for (const Bits column : around(window.suspected, x, y)) near |= column;
+      const Bits near = anyOf(around(window.suspected, x, y));
       for (int n = 0; n < surface_bits; ++n, layer = suspected & layer << 1) {
         // An object reaches higher than the noise, even where beams missed some of its cells.
         const int up = surface_bits - n;
@@ -109,14 +112,14 @@ BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits) {
 
 BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
   BitGrid noise(window.suspected.window(), 0);
-  const Bits overhead = ~lowBits(std::min(ground_bit + config.overhead_bits, kMaxBits));
+  if (config.surface_bits == 0) return noise;  // no layer is that thin
+  const Bits overhead = ~lowBits(ground_bit + config.overhead_bits);
   for (int x = 1; x + 1 < window.suspected.size(); ++x) {
     for (int y = 1; y + 1 < window.suspected.size(); ++y) {
       const Bits cells = window.suspected.at(x, y) & overhead;
       if (cells == 0) continue;
-      Bits near = 0;
-      for (const Bits column : around(window.suspected, x, y)) near |= column;
-      Bits thicker = config.surface_bits == 0 ? cells : Bits{0};
+      const Bits near = anyOf(around(window.suspected, x, y));
+      Bits thicker = 0;
       for (int n = config.surface_bits + 1; n <= 2 * config.surface_bits; ++n) {
         thicker |= near << n | near >> n;
       }

@@ -209,11 +209,11 @@ void checkConfig(const Config& config) {
     throw ConfigError("scan.min_range = " + text(config.scan.min_range) +
                       " must be less than scan.max_range = " + text(config.scan.max_range));
   }
-  constexpr double kMaxColumns = 2000;  // of a window's side: 32 MB for each of its matrices
   if (config.matrix.room_res_g > 0.0 && config.matrix.room_res_g < 0.05) {
     throw ConfigError("matrix.room_res_g = " + text(config.matrix.room_res_g) +
                       " must be 0 or at least 0.05");
   }
+  constexpr double kMaxColumns = 2000;  // of a window's side: 32 MB for each of its matrices
   const double smallest = cellSizeInRoom(config.matrix);
   if (config.matrix.roi_size / smallest > kMaxColumns) {
     throw ConfigError("matrix.roi_size = " + text(config.matrix.roi_size) + " must be at most " +

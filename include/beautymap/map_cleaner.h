@@ -82,10 +82,11 @@ class MapCleaner {
   double zOrigin() const { return z_origin_.value_or(0.0); }
 
  private:
+  /// When a tile's ground is known: the cells that can be judged by evidence.
+  void findPossibleCells(Tile& tile) const;
   /// The published judgement of one scan: every candidate it leaves is dynamic.
   void findDynamic(ScanView& view) const;
   /// What one scan saw, for a judgement over all scans.
-  void findPossibleCells(Tile& tile) const;
   void findFree(ScanView& view) const;
   void addEvidence(const ScanView& view);
 
