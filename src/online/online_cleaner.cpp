@@ -166,7 +166,7 @@ void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
 }
 
 TileFileWriter::Header OnlineCleaner::header(const std::string& map_frame) const {
-  return {map_frame, map_.zOrigin(), config().matrix.res_g, points_.layout()};
+  return {map_frame, map_.zOrigin(), points_.layout()};
 }
 
 std::vector<ColumnIndex> OnlineCleaner::tiles() const {
@@ -272,7 +272,7 @@ void OnlineCleaner::saveSession(const std::string& path, const std::string& map_
 std::string OnlineCleaner::loadSession(const std::string& path) {
   const std::lock_guard<std::mutex> lock(mutex_);
   TileFileReader reader(path, config_);
-  setCellSize(reader.header().res_g);
+  setCellSize(reader.cellSize());
   map_.setZOrigin(reader.header().z_origin);
   points_.setLayout(reader.header().layout);
   for (const pcl::PCLPointField& field : reader.header().layout.fields) {

@@ -69,8 +69,7 @@ TileFileWriter::TileFileWriter(std::string path, const Header& header, const Con
     write(value.data(), value.size());
   };
   write(kMagic, sizeof(kMagic) - 1);
-  Meaning meaning = meaningOf(config);
-  meaning.res_g = header.res_g;
+  const Meaning meaning = meaningOf(config);
   write(&meaning, sizeof(meaning));
   write(&header.z_origin, sizeof(header.z_origin));
   text(header.map_frame);
@@ -138,7 +137,7 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
   }
   Meaning written;
   read(&written, sizeof(written));
-  header_.res_g = written.res_g;
+  cell_size_ = written.res_g;
   Meaning wanted = meaningOf(config);
   // A session of a room goes on as one, also where the present scans would not say so.
   if (written.res_g == cellSizeInRoom(config.matrix)) wanted.res_g = written.res_g;

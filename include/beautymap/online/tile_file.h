@@ -20,7 +20,6 @@ class TileFileWriter {
   struct Header {
     std::string map_frame;
     double z_origin = 0.0;
-    double res_g = 0.0;          ///< the cells' size: that of the configuration, or in a room
     pcl::PCLPointCloud2 layout;  ///< of the points' records
   };
 
@@ -47,6 +46,8 @@ class TileFileReader {
   TileFileReader(const std::string& path, const Config& config);
 
   const TileFileWriter::Header& header() const { return header_; }
+  /// The cells' size [m]: that of the configuration, or in a room.
+  double cellSize() const { return cell_size_; }
   /// The next tile; false at the end.
   /// @throws InputError when the file is damaged.
   bool next(ColumnIndex& index, Tile& tile, TilePoints& points);
@@ -63,6 +64,7 @@ class TileFileReader {
   std::unique_ptr<std::FILE, Closer> file_;
   std::uint64_t size_ = 0;  ///< of the file [byte]: no damaged count allocates more
   TileFileWriter::Header header_;
+  double cell_size_ = 0.0;
 };
 
 }  // namespace beautymap
