@@ -43,17 +43,9 @@ void MapCleaner::observe(const ScanView& view) {
   StageClock clock(times_);
   dropped_ += view.dropped;
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
-    float lowest = Tile::kNoHeight, highest = -Tile::kNoHeight;
-    Bits heights = 0;
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const float z = view.placed.z[i];
-      lowest = std::min(lowest, z);
-      highest = std::max(highest, z);
-      heights |= height_bins_.bin(z);
-    }
-    tile->lowest[column] = std::min(tile->lowest[column], lowest);
-    tile->highest[column] = std::max(tile->highest[column], highest);
-    tile->possible[column] |= heights;
+    tile->lowest[column] = std::min(tile->lowest[column], run.lowest);
+    tile->highest[column] = std::max(tile->highest[column], run.highest);
+    tile->possible[column] |= height_bins_.bins(view.placed, run);
   });
   clock.lap("coarse_ground");
 }
