@@ -82,11 +82,11 @@ void MapCleaner::findPossibleCells(Tile& tile) const {
 
 void MapCleaner::encode(const Scan& scan) {
   place(scan, view_);
+  addTimes(view_);
   encode(view_);
 }
 
 void MapCleaner::encode(const ScanView& view) {
-  times_.add(view.times);
   StageClock clock(times_);
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
     tile->occupied[column] |= encoding_.bits(view.placed, run, tile->ground[column]);
@@ -96,11 +96,13 @@ void MapCleaner::encode(const ScanView& view) {
 
 void MapCleaner::compare(const Scan& scan) {
   place(scan, view_);
+  addTimes(view_);
   look(view_);
   add(view_);
 }
 
 void MapCleaner::look(ScanView& view) const {
+  view.times = {};
   if (config_.evidence.enabled) {
     findFree(view);
   } else {
@@ -206,12 +208,14 @@ void MapCleaner::segmentGround() {
 std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
   std::vector<PointClass> classes;
   place(scan, view_);
+  addTimes(view_);
   classify(view_, classes);
   addTimes(view_);
   return classes;
 }
 
 void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) const {
+  view.times = {};
   StageClock clock(view.times);
   judgement_.classify(map_, view.placed, classes);
   clock.lap("classifying");
