@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "vector_clones.h"
+
 namespace beautymap {
 namespace {
 
@@ -77,6 +79,7 @@ struct BlockColumns {
   std::array<std::int32_t, kBlock> x, y, changed;
 };
 
+BEAUTYMAP_VECTOR_CLONES
 void findColumns(const float* x, const float* y, std::size_t size, float columns_per_metre,
                  BlockColumns& columns) {
   for (std::size_t i = 0; i < size; ++i) {
@@ -116,6 +119,7 @@ void appendRuns(PlacedScan& placed, std::size_t first, std::size_t size, float c
 /// Marks the usable points of a block.
 /// @param x, y, z  where they lie
 /// @return  how many they are
+BEAUTYMAP_VECTOR_CLONES
 std::int32_t findUsable(const pcl::PointXYZ* p, std::size_t size, const float* x, const float* y,
                         const float* z, const Eigen::Vector3f& sensor, float min_squared,
                         float max_squared, Block& block) {
@@ -155,6 +159,7 @@ struct RigidMove {
 };
 
 // The moves come as copies, which no store can change.
+BEAUTYMAP_VECTOR_CLONES
 void moveBlock(RigidMove m, const pcl::PointXYZ* __restrict p, std::size_t size,
                float* __restrict x, float* __restrict y, float* __restrict z) {
   for (std::size_t i = 0; i < size; ++i) {
@@ -165,6 +170,7 @@ void moveBlock(RigidMove m, const pcl::PointXYZ* __restrict p, std::size_t size,
 }
 
 /// A registered cloud may hold large coordinates: what is large in float is subtracted in double.
+BEAUTYMAP_VECTOR_CLONES
 void moveBlock(Eigen::Vector3d shift, const pcl::PointXYZ* __restrict p, std::size_t size,
                float* __restrict x, float* __restrict y, float* __restrict z) {
   const double tx = shift.x(), ty = shift.y(), tz = shift.z();
