@@ -19,7 +19,7 @@ class PlacedSpool {
     kHeights,  ///< without x and y
   };
 
-  /// @param folder  where the file is made; it needs about 20 bytes a point
+  /// @param folder  where the file is made; it needs 20 to 40 bytes a point
   /// @throws InputError when no file can be made there.
   explicit PlacedSpool(const std::string& folder) : file_(folder) {}
 
