@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "beautymap/beam_visibility.h"
 #include "beautymap/binary_encoding.h"
@@ -154,7 +155,8 @@ void beam_visibility(State& state) {
   });
 }
 
-// The passes: a whole scan is all of them; only the published method needs encode.
+// The passes, of which each places the scan. A whole scan is all of them, placed once as the replay
+// does; only the published method needs encode.
 template <const char* kConfig>
 void observe(State& state) {
   run(state, kConfig, [](Prepared& p) { p.cleaner.observe(p.scan); });
@@ -173,11 +175,16 @@ void extraction(State& state) {
 }
 template <const char* kConfig>
 void whole_scan(State& state) {
-  run(state, kConfig, [](Prepared& p) {
-    p.cleaner.observe(p.scan);
-    if (p.cleaner.needsEncoding()) p.cleaner.encode(p.scan);
-    p.cleaner.compare(p.scan);
-    DoNotOptimize(p.cleaner.classify(p.scan));
+  ScanView view;
+  std::vector<PointClass> classes;
+  run(state, kConfig, [&](Prepared& p) {
+    p.cleaner.place(p.scan, view);
+    p.cleaner.observe(view);
+    if (p.cleaner.needsEncoding()) p.cleaner.encode(view);
+    p.cleaner.look(view);
+    p.cleaner.add(view);
+    p.cleaner.classify(view, classes);
+    DoNotOptimize(classes.data());
   });
 }
 

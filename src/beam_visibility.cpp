@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "vector_clones.h"
+
 namespace beautymap {
 namespace {
 
@@ -58,6 +60,7 @@ class ColumnViews {
     ++size_;
   }
   /// @param x_m  of the row, seen from the sensor [m]
+  BEAUTYMAP_VECTOR_CLONES
   void view(PixelScale scale, float x_m, const MatrixConfig& matrix) {
     const auto half_width = 0.5F * static_cast<float>(matrix.res_g);
     const auto res_h = static_cast<float>(matrix.res_h);
@@ -117,6 +120,54 @@ class ColumnViews {
   Values<float> y_m_, bottom_, distance_, first_, last_, bottom_slope_, top_slope_;
 };
 
+/// Finds the pixels of a block of points.
+struct DirectionBlock {
+  static constexpr std::size_t kSize = 256;
+
+  PixelScale scale;
+  int azimuth_pixels, slope_pixels;
+  int first_slope, last_slope;  ///< of all blocks
+  Eigen::Vector3f sensor;
+
+  void find(const float* x, const float* y, const float* z, std::size_t size,
+            std::int32_t* azimuths, std::int32_t* slopes, std::int32_t* ends);
+};
+
+BEAUTYMAP_VECTOR_CLONES
+void DirectionBlock::find(const float* x, const float* y, const float* z, std::size_t size,
+                          std::int32_t* azimuths, std::int32_t* slopes, std::int32_t* ends) {
+  const PixelScale to_pixels = scale;
+  const float sx = sensor.x(), sy = sensor.y(), sz = sensor.z();
+  // Rounding may end at the whole circle.
+  const auto last_azimuth = static_cast<float>(azimuth_pixels - 1);
+  const int slope_end = slope_pixels;
+  int first = first_slope, last = last_slope;
+  // Short loops without branches: the compiler takes several points at a time.
+  std::array<float, kSize> distance, azimuth, slope;
+  for (std::size_t i = 0; i < size; ++i) {
+    const float dx = x[i] - sx, dy = y[i] - sy;
+    distance[i] = std::sqrt(dx * dx + dy * dy);
+    azimuth[i] = to_pixels.azimuthPixel(dx, dy);
+    // NaN straight above the sensor.
+    const float pixel = to_pixels.slopePixel((z[i] - sz) / distance[i]);
+    slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    ends[i] = BeamImage::limitFor(distance[i]) & ~BeamImage::kMaxCount;
+    // The order of the arguments makes NaN the lower limit.
+    azimuths[i] = static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
+    const int pixel =
+        floorToInt(std::max(-1.0F, std::min(slope[i], static_cast<float>(slope_end))));
+    slopes[i] = pixel < slope_end ? pixel : BeamImage::kOutside;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    first = std::min(first, slopes[i] < 0 ? slope_end : slopes[i]);
+    last = std::max(last, slopes[i]);
+  }
+  first_slope = first;
+  last_slope = last;
+}
+
 int wrapped(int azimuth, int pixels) {
   return azimuth < 0 ? azimuth + pixels : azimuth >= pixels ? azimuth - pixels : azimuth;
 }
@@ -141,6 +192,30 @@ Bits inImage(Bits candidates, const BeamImage& beams, const ColumnView& view) {
   return candidates & lowBits(last) & ~lowBits(first);
 }
 
+/// So many pixels are summed at once.
+constexpr std::size_t kLanes = 8;
+using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
+static_assert(kLanes <= BeamImage::kPadding, "reads that far beyond a row");
+
+/// The sums over rows of pixels: of all beams, and of those that passed.
+/// @param all, passed  have room for kLanes more
+BEAUTYMAP_VECTOR_CLONES
+void sumRows(const std::vector<const BeamImage::Pixel*>& rows, std::size_t size,
+             BeamImage::Pixel behind, BeamImage::Pixel* all, BeamImage::Pixel* passed) {
+  for (std::size_t v = 0; v < size; v += kLanes) {
+    Lanes all_lanes{}, passed_lanes{};
+    for (const BeamImage::Pixel* row : rows) {
+      Lanes lanes;
+      std::memcpy(&lanes, row + v, sizeof(lanes));
+      const Lanes counts = lanes & BeamImage::kMaxCount;
+      all_lanes += counts;
+      passed_lanes += counts & (lanes > behind);  // a true lane has all bits set
+    }
+    std::memcpy(all + v, &all_lanes, sizeof(all_lanes));
+    std::memcpy(passed + v, &passed_lanes, sizeof(passed_lanes));
+  }
+}
+
 /// The beams in the azimuths of a column, summed by slope: those that passed it, and all of them.
 class BeamSums {
  public:
@@ -156,21 +231,9 @@ class BeamSums {
     }
     const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
     // up_to[v] counts the slopes below v.
-    all_up_to_.resize(size + 2 * kLanes + 1);
-    passed_up_to_.resize(size + 2 * kLanes + 1);
-    const BeamImage::Pixel limit = view.behind;
-    const Lanes behind = {limit, limit, limit, limit};
-    for (std::size_t v = 0; v < size; v += 2 * kLanes) {
-      Lanes all_low{}, all_high{}, passed_low{}, passed_high{};
-      for (const BeamImage::Pixel* row : rows_) {
-        add(row + v, behind, all_low, passed_low);
-        add(row + v + kLanes, behind, all_high, passed_high);
-      }
-      store(all_low, &all_up_to_[v + 1]);
-      store(all_high, &all_up_to_[v + 1 + kLanes]);
-      store(passed_low, &passed_up_to_[v + 1]);
-      store(passed_high, &passed_up_to_[v + 1 + kLanes]);
-    }
+    all_up_to_.resize(size + kLanes + 1);
+    passed_up_to_.resize(size + kLanes + 1);
+    sumRows(rows_, size, view.behind, &all_up_to_[1], &passed_up_to_[1]);
     std::int32_t all = 0, passed = 0;
     all_up_to_[0] = passed_up_to_[0] = 0;
     for (std::size_t v = 1; v <= size; ++v) {
@@ -190,22 +253,6 @@ class BeamSums {
   }
 
  private:
-  /// As many pixels as every SIMD unit takes at once.
-  static constexpr std::size_t kLanes = 4;
-  using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
-  static_assert(2 * kLanes <= BeamImage::kPadding, "reads that far beyond a row");
-
-  static void add(const BeamImage::Pixel* pixels, const Lanes& behind, Lanes& all, Lanes& passed) {
-    Lanes lanes;
-    std::memcpy(&lanes, pixels, sizeof(lanes));
-    const Lanes counts = BeamImage::countOf(lanes);
-    all += counts;
-    passed += counts & (lanes > behind);  // a true lane has all bits set
-  }
-  static void store(const Lanes& lanes, BeamImage::Pixel* to) {
-    std::memcpy(to, &lanes, sizeof(lanes));
-  }
-
   int first_slope_ = 0;
   int last_slope_ = -1;
   std::vector<const BeamImage::Pixel*> rows_;
@@ -253,40 +300,15 @@ void BeamImage::findDirections(const PlacedScan& scan) {
   for (std::vector<std::int32_t>* values : {&azimuths_, &slopes_, &ends_}) {
     values->resize(scan.size());
   }
-  first_slope_ = slope_pixels_;
-  last_slope_ = kOutside;
-  const PixelScale scale = scale_;
-  const float sx = scan.sensor.x(), sy = scan.sensor.y(), sz = scan.sensor.z();
-  // Rounding may end at the whole circle.
-  const auto last_azimuth = static_cast<float>(azimuth_pixels_ - 1);
-  const auto slope_end = static_cast<float>(slope_pixels_);
-  // Blocks, and short loops without branches: the compiler takes several points at a time.
-  constexpr std::size_t kBlock = 256;
-  std::array<float, kBlock> distance, azimuth, slope;
-  for (std::size_t begin = 0; begin < scan.size(); begin += kBlock) {
-    const std::size_t size = std::min(kBlock, scan.size() - begin);
-    for (std::size_t i = 0; i < size; ++i) {
-      const float x = scan.x[begin + i] - sx, y = scan.y[begin + i] - sy;
-      distance[i] = std::sqrt(x * x + y * y);
-      azimuth[i] = scale.azimuthPixel(x, y);
-      // NaN straight above the sensor.
-      const float pixel = scale.slopePixel((scan.z[begin + i] - sz) / distance[i]);
-      slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      ends_[begin + i] = limitFor(distance[i]) & ~kMaxCount;
-      // The order of the arguments makes NaN the lower limit.
-      azimuths_[begin + i] =
-          static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
-      slopes_[begin + i] = floorToInt(std::max(-1.0F, std::min(slope[i], slope_end)));
-    }
-    for (std::size_t i = begin; i < begin + size; ++i) {
-      if (slopes_[i] >= slope_pixels_) slopes_[i] = kOutside;
-      if (slopes_[i] < 0) continue;
-      first_slope_ = std::min(first_slope_, slopes_[i]);
-      last_slope_ = std::max(last_slope_, slopes_[i]);
-    }
+  DirectionBlock block{scale_,        azimuth_pixels_, slope_pixels_,
+                       slope_pixels_, kOutside,        scan.sensor};
+  for (std::size_t begin = 0; begin < scan.size(); begin += DirectionBlock::kSize) {
+    const std::size_t size = std::min(DirectionBlock::kSize, scan.size() - begin);
+    block.find(&scan.x[begin], &scan.y[begin], &scan.z[begin], size, &azimuths_[begin],
+               &slopes_[begin], &ends_[begin]);
   }
+  first_slope_ = block.first_slope;
+  last_slope_ = block.last_slope;
 }
 
 void BeamImage::fill(const PlacedScan& scan) {

@@ -43,17 +43,9 @@ void MapCleaner::observe(const ScanView& view) {
   StageClock clock(times_);
   dropped_ += view.dropped;
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
-    float lowest = Tile::kNoHeight, highest = -Tile::kNoHeight;
-    Bits heights = 0;
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const float z = view.placed.z[i];
-      lowest = std::min(lowest, z);
-      highest = std::max(highest, z);
-      heights |= height_bins_.bin(z);
-    }
-    tile->lowest[column] = std::min(tile->lowest[column], lowest);
-    tile->highest[column] = std::max(tile->highest[column], highest);
-    tile->possible[column] |= heights;
+    tile->lowest[column] = std::min(tile->lowest[column], run.lowest);
+    tile->highest[column] = std::max(tile->highest[column], run.highest);
+    tile->possible[column] |= height_bins_.bins(view.placed, run);
   });
   clock.lap("coarse_ground");
 }
@@ -90,11 +82,11 @@ void MapCleaner::findPossibleCells(Tile& tile) const {
 
 void MapCleaner::encode(const Scan& scan) {
   place(scan, view_);
+  addTimes(view_);
   encode(view_);
 }
 
 void MapCleaner::encode(const ScanView& view) {
-  times_.add(view.times);
   StageClock clock(times_);
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
     tile->occupied[column] |= encoding_.bits(view.placed, run, tile->ground[column]);
@@ -104,11 +96,13 @@ void MapCleaner::encode(const ScanView& view) {
 
 void MapCleaner::compare(const Scan& scan) {
   place(scan, view_);
+  addTimes(view_);
   look(view_);
   add(view_);
 }
 
 void MapCleaner::look(ScanView& view) const {
+  view.times = {};
   if (config_.evidence.enabled) {
     findFree(view);
   } else {
@@ -214,12 +208,14 @@ void MapCleaner::segmentGround() {
 std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
   std::vector<PointClass> classes;
   place(scan, view_);
+  addTimes(view_);
   classify(view_, classes);
   addTimes(view_);
   return classes;
 }
 
 void MapCleaner::classify(ScanView& view, std::vector<PointClass>& classes) const {
+  view.times = {};
   StageClock clock(view.times);
   judgement_.classify(map_, view.placed, classes);
   clock.lap("classifying");

@@ -113,20 +113,28 @@ int MapJudgement::groundBit(const Tile& tile, std::size_t column) const {
 
 int MapJudgement::fineBin(const Tile& tile, std::size_t column, float z) const {
   const int bit = encoding_.bitIndex(z, tile.ground[column]);
-  if (bit < 0 || bit != groundBit(tile, column)) return -1;
+  const int ground_bit = groundBit(tile, column);
+  if (bit < 0 || bit < ground_bit) return -1;
+  if (bit > ground_bit) return tile.fineBins();
   const float cell_bottom = tile.ground[column] + static_cast<float>(bit * config_.matrix.res_h);
   return fineBinOf(z - cell_bottom, tile.fineBins(), config_.fine_ground);
 }
 
 void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const {
-  const auto bins = static_cast<std::size_t>(map.fineBins());
+  const int bins = map.fineBins();
   const auto count = [&](auto bin_of) {
     forEachTileRun(map, scan, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
-      if (tile->flat[column]) return;
-      std::uint32_t* counts = &tile->fine_counts[column * bins];
+      if (tile->flat[column] || !countsGround(*tile, column)) return;
+      std::uint32_t* counts = &tile->fine_counts[column * static_cast<std::size_t>(bins)];
+      const int lowest = bin_of(*tile, column, run.lowest);
+      if (lowest >= bins) return;
+      if (lowest >= 0 && lowest == bin_of(*tile, column, run.highest)) {
+        counts[lowest] += run.size();
+        return;
+      }
       for (std::uint32_t i = run.begin; i < run.end; ++i) {
         const int bin = bin_of(*tile, column, scan.z[i]);
-        if (bin >= 0) ++counts[bin];
+        if (bin >= 0 && bin < bins) ++counts[bin];
       }
     });
   };
@@ -139,6 +147,12 @@ void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const
     count(
         [this](const Tile& tile, std::size_t column, float z) { return fineBin(tile, column, z); });
   }
+}
+
+bool MapJudgement::countsGround(const Tile& tile, std::size_t column) const {
+  if (config_.evidence.enabled) return true;
+  const Bits occupied = tile.occupied[column];
+  return (occupied & lowestBit(occupied) << 1) != 0;
 }
 
 int MapJudgement::groundBins(const Tile& tile, std::size_t column, Bits dynamic) const {
@@ -163,13 +177,26 @@ bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z, Bits
 
 void MapJudgement::classify(const TileMap& map, const PlacedScan& scan,
                             std::vector<PointClass>& classes) const {
-  classes.assign(scan.cloud_size, PointClass::kDropped);
+  if (scan.isWhole()) {
+    classes.assign(scan.cloud_size, PointClass::kStatic);
+  } else {
+    classes.assign(scan.cloud_size, PointClass::kDropped);
+    for (const std::uint32_t source : scan.source_index) classes[source] = PointClass::kStatic;
+  }
   forEachTileRun(map, scan, [&](const Tile* tile, std::size_t column, const ColumnRun& run) {
     // Most columns have no dynamic cell: nothing of them is removed.
-    const bool judged = tile != nullptr && tile->dynamic[column] != 0;
+    if (tile == nullptr || tile->dynamic[column] == 0) return;
+    // From some height on all points of a cell are dynamic, or none.
+    const float ground = tile->ground[column];
+    const bool highest = isDynamic(*tile, column, run.highest);
+    const bool alike =
+        encoding_.bitIndex(run.lowest, ground) == encoding_.bitIndex(run.highest, ground) &&
+        isDynamic(*tile, column, run.lowest) == highest;
+    if (alike && !highest) return;
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const bool dynamic = judged && isDynamic(*tile, column, scan.z[i]);
-      classes[scan.source_index[i]] = dynamic ? PointClass::kDynamic : PointClass::kStatic;
+      if (alike || isDynamic(*tile, column, scan.z[i])) {
+        classes[scan.sourceOf(i)] = PointClass::kDynamic;
+      }
     }
   });
 }

@@ -76,10 +76,9 @@ void OnlineMap::addLowest() {
   for (const ColumnRun& run : placed_.runs) {
     const ColumnIndex column{placed_.anchor.x + run.x, placed_.anchor.y + run.y};
     float& lowest = tile_of(column)->lowest[static_cast<std::size_t>(TileMap::indexInTile(column))];
-    const float z = *std::min_element(&placed_.z[run.begin], &placed_.z[run.end - 1] + 1);
-    if (z >= lowest) continue;
-    if (lowest - z > kNoticeable) lowered_.push_back(column);
-    lowest = z;
+    if (run.lowest >= lowest) continue;
+    if (lowest - run.lowest > kNoticeable) lowered_.push_back(column);
+    lowest = run.lowest;
   }
 }
 
@@ -282,8 +281,7 @@ void OnlineMap::classifyLive() {
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
           const bool is_dynamic = dynamic != 0 && judgement_.isDynamic(*tile, column, placed_.z[i],
                                                                        dynamic, ground_bins);
-          classes_[placed_.source_index[i]] =
-              is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
+          classes_[placed_.sourceOf(i)] = is_dynamic ? PointClass::kDynamic : PointClass::kStatic;
         }
       });
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -34,8 +35,10 @@ float steepestSlope(const PlacedScan& scan, double share) {
   }
   if (slopes.empty()) return -std::numeric_limits<float>::infinity();
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(slopes.size() - 1));
-  std::nth_element(slopes.begin(), slopes.begin() + rank, slopes.end());
-  return slopes[static_cast<std::size_t>(rank)];
+  // From the top, where only few are sorted.
+  const auto above = static_cast<std::ptrdiff_t>(slopes.size()) - rank;
+  std::partial_sort(slopes.begin(), slopes.begin() + above, slopes.end(), std::greater<>());
+  return slopes[static_cast<std::size_t>(above) - 1];
 }
 
 BitGrid cellsInSight(const PlacedScan& scan, const BitGrid& scan_bits, const MapWindow& map,

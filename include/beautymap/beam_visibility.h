@@ -46,14 +46,16 @@ class BeamImage {
   /// One pixel in one word, so that a point touches one cache line: the nearest horizontal distance
   /// at which a beam ended [mm] above its lowest byte, which counts the beams up to 255.
   using Pixel = std::int32_t;
-  template <typename Pixels>
-  static Pixels countOf(Pixels pixels) {
-    return pixels & kMaxCount;
-  }
+  static constexpr int kCountBits = 8;
+  static constexpr Pixel kMaxCount = (1 << kCountBits) - 1;
+  static Pixel countOf(Pixel pixel) { return pixel & kMaxCount; }
   /// A pixel is greater than this if all its beams ended farther away.
   static Pixel limitFor(float distance_m) {
     return static_cast<Pixel>(std::min(distance_m, kFarthest) * 1000.0F) << kCountBits | kMaxCount;
   }
+
+  /// In place of a slope's pixel: a beam too near or too steep for the image.
+  static constexpr std::int32_t kOutside = -1;
 
   explicit BeamImage(const VisibilityConfig& config);
 
@@ -77,8 +79,6 @@ class BeamImage {
   Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
 
  private:
-  static constexpr int kCountBits = 8;
-  static constexpr Pixel kMaxCount = (1 << kCountBits) - 1;
   static constexpr float kFarthest = 8000.0F;  // [m]
   static constexpr Pixel kEmpty = 0x7FFFFF00;  // farther than any beam, and none
 
@@ -94,7 +94,6 @@ class BeamImage {
   void findDirections(const PlacedScan& scan);
 
   // Of each point of the scan, on its way into the image.
-  static constexpr std::int32_t kOutside = -1;  ///< too near or too steep
   std::vector<std::int32_t> azimuths_, slopes_, ends_;
 };
 

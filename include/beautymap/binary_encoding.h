@@ -29,7 +29,8 @@ class BinaryEncoding {
   }
   /// The bits of all points of a run.
   Bits bits(const PlacedScan& scan, const ColumnRun& run, float ground) const {
-    Bits column = 0;
+    Bits column = bit(run.lowest, ground);
+    if (bitIndex(run.lowest, ground) == bitIndex(run.highest, ground)) return column;
     for (std::uint32_t i = run.begin; i < run.end; ++i) column |= bit(scan.z[i], ground);
     return column;
   }
@@ -47,6 +48,13 @@ class HeightBins {
       : bits_per_metre_(static_cast<float>(1.0 / config.res_h)), n_bit_(config.n_bit) {}
 
   Bits bin(float z) const { return Bits{1} << (indexOf(z) & (kMaxBits - 1)); }
+  /// The bins of all points of a run.
+  Bits bins(const PlacedScan& scan, const ColumnRun& run) const {
+    Bits column = bin(run.lowest);
+    if (indexOf(run.lowest) == indexOf(run.highest)) return column;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) column |= bin(scan.z[i]);
+    return column;
+  }
 
   /// A superset of a column's occupied bits: a cell overlaps two bins, heights beyond the column
   /// wrap around into it, and the top bit stands for everything above. (Only a point within

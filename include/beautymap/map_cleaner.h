@@ -25,7 +25,7 @@ struct ScanView {
   BitGrid hit;    ///< cells around the sensor that the scan hit
   /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
   BitGrid free;
-  StageTimes times;
+  StageTimes times;                ///< of the last of place(), look() and classify()
   std::optional<BeamImage> beams;  ///< large, and only evidence needs it
 };
 
@@ -60,8 +60,9 @@ class MapCleaner {
   /// One class per point of the scan's cloud.
   std::vector<PointClass> classify(const Scan& scan);
 
-  // The same in parts. place() is the first one of each phase; startAt() must know the first
-  // scan's sensor before.
+  // The same in parts, so that a scan is placed once, before it is observed: the later phases take
+  // it from where it was kept (classify() needs no x and y). startAt() must know the first scan's
+  // sensor before.
   void startAt(const Eigen::Vector3d& sensor_in_map);
   void place(const Scan& scan, ScanView& view) const;
   void observe(const ScanView& view);
@@ -69,7 +70,7 @@ class MapCleaner {
   void look(ScanView& view) const;
   void add(const ScanView& view);
   void classify(ScanView& view, std::vector<PointClass>& classes) const;
-  /// Counts a view's times, which observe(), encode() and add() do by themselves.
+  /// Counts a view's times, which observe() and add() do by themselves.
   void addTimes(const ScanView& view) { times_.add(view.times); }
 
   const Config& config() const { return config_; }

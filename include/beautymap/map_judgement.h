@@ -62,13 +62,17 @@ class MapJudgement {
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
+  /// Whether anything can depend on the counts of a column: the published method divides a ground
+  /// cell only below an occupied one.
+  bool countsGround(const Tile& tile, std::size_t column) const;
   /// The bin of a height in the column's histogram of ground heights; -1 outside.
   int groundBin(const Tile& tile, std::size_t column, float z) const {
-    return usesGroundLayer() ? layerBin(tile, column, z) : fineBin(tile, column, z);
+    const int bin = usesGroundLayer() ? layerBin(tile, column, z) : fineBin(tile, column, z);
+    return bin < tile.fineBins() ? bin : -1;
   }
+  // The same, but the number of bins above them: monotonic.
   int layerBin(const Tile& tile, std::size_t column, float z) const {
-    const int bin = ground_layer_.binOf(z - tile.ground[column] - below_ground_);
-    return bin < ground_layer_.bins() ? bin : -1;
+    return ground_layer_.binOf(z - tile.ground[column] - below_ground_);
   }
   int fineBin(const Tile& tile, std::size_t column, float z) const;
 

@@ -43,6 +43,8 @@ struct DroppedPoints {
 struct ColumnRun {
   std::int32_t x, y;         ///< column relative to the scan's anchor
   std::uint32_t begin, end;  ///< of its points
+  float lowest, highest;     ///< of their heights: most runs lie in one cell, and these tell [m]
+  std::uint32_t size() const { return end - begin; }
 };
 
 /// A scan's usable points, relative to a map column near the sensor, so that float32 keeps its
@@ -53,11 +55,15 @@ struct PlacedScan {
       anchor;  ///< its corner is the origin of x and y below; z counts from the map's z origin
   Eigen::Vector3f sensor;                   ///< [m]
   std::vector<float> x, y, z;               ///< of the points [m]
-  std::vector<std::uint32_t> source_index;  ///< of each point in the scan's cloud
+  std::vector<std::uint32_t> source_index;  ///< of each point in the cloud; not when it is whole
   std::vector<ColumnRun> runs;              ///< all points, in order
   std::size_t cloud_size = 0;               ///< points of the scan's cloud, usable or not
 
   std::size_t size() const { return z.size(); }
+  /// Whether no point of the cloud was dropped.
+  bool isWhole() const { return size() == cloud_size; }
+  /// Where a point is in the scan's cloud.
+  std::size_t sourceOf(std::size_t i) const { return isWhole() ? i : source_index[i]; }
   Eigen::Vector3f point(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 

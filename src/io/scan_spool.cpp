@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/io/scan_spool.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -34,27 +29,7 @@ bool sameFields(const pcl::PCLPointCloud2& a, const pcl::PCLPointCloud2& b) {
   return true;
 }
 
-int openUnnamed(const std::string& folder) {
-#ifdef O_TMPFILE
-  const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (unnamed >= 0) return unnamed;
-#endif
-  std::string name = folder + "/.beautymap-spool-XXXXXX";
-  const int named = ::mkstemp(&name[0]);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
-
 }  // namespace
-
-ScanSpool::ScanSpool(const std::string& folder) : folder_(folder) {
-  const int descriptor = openUnnamed(folder);
-  if (descriptor >= 0) file_.reset(::fdopen(descriptor, "w+b"));
-  if (!file_) {
-    throw InputError("cannot make a temporary file in '" + folder + "': " + std::strerror(errno));
-  }
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // whole scans are large enough
-}
 
 bool ScanSpool::accepts(const SourceScan& scan) const {
   return size_ == 0 || sameFields(scan.cloud, layout_);
@@ -69,14 +44,8 @@ void ScanSpool::append(const SourceScan& scan) {
   Record record{scan.stamp_ns, scan.cloud.width, {}, {}};
   std::memcpy(record.T_map_cloud, scan.T_map_cloud.data(), sizeof(record.T_map_cloud));
   std::memcpy(record.T_map_sensor, scan.T_map_sensor.data(), sizeof(record.T_map_sensor));
-  const std::vector<std::uint8_t>& data = scan.cloud.data;
-  // Scans may be appended while others are read.
-  if (::fseeko(file_.get(), 0, SEEK_END) != 0 ||
-      std::fwrite(&record, sizeof(record), 1, file_.get()) != 1 ||
-      std::fwrite(data.data(), 1, data.size(), file_.get()) != data.size()) {
-    throw InputError("cannot keep the scans in a temporary file in '" + folder_ +
-                     "': " + std::strerror(errno));
-  }
+  file_.append(&record, sizeof(record));
+  file_.append(scan.cloud.data);
   ++size_;
 }
 
@@ -88,10 +57,7 @@ void ScanSpool::rewind() {
 bool ScanSpool::next(SourceScan& scan) {
   if (read_ == size_) return false;
   Record record;
-  if (::fseeko(file_.get(), read_offset_, SEEK_SET) != 0 ||
-      std::fread(&record, sizeof(record), 1, file_.get()) != 1) {
-    throw InputError("cannot read back the temporary file in '" + folder_ + "'");
-  }
+  file_.read(read_offset_, &record, sizeof(record));
   std::vector<std::uint8_t> buffer = std::move(scan.cloud.data);
   scan.cloud = layout_;
   scan.cloud.data = std::move(buffer);
@@ -101,11 +67,7 @@ bool ScanSpool::next(SourceScan& scan) {
   scan.stamp_ns = record.stamp_ns;
   std::memcpy(scan.T_map_cloud.data(), record.T_map_cloud, sizeof(record.T_map_cloud));
   std::memcpy(scan.T_map_sensor.data(), record.T_map_sensor, sizeof(record.T_map_sensor));
-  if (std::fread(scan.cloud.data.data(), 1, scan.cloud.data.size(), file_.get()) !=
-      scan.cloud.data.size()) {
-    throw InputError("cannot read back the temporary file in '" + folder_ + "'");
-  }
-  read_offset_ += static_cast<std::int64_t>(sizeof(record) + scan.cloud.data.size());
+  file_.read(read_offset_, scan.cloud.data);
   ++read_;
   return true;
 }

@@ -30,6 +30,7 @@ using Mode = tbb::filter;
 #include "beautymap/io/moving_labels.h"
 #include "beautymap/io/pcd_header.h"
 #include "beautymap/io/pcd_stream.h"
+#include "beautymap/io/placed_spool.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_spool.h"
 #include "beautymap/map_cleaner.h"
@@ -152,6 +153,7 @@ class OfflineRun {
         read_ahead_(readAhead(source, config)),
         cleaner_(config),
         spool_(options.output),
+        placed_(options.output),
         evaluator_(options.score_radius_m) {}
 
   OfflineReport run() {
@@ -159,11 +161,13 @@ class OfflineRun {
     observe();
     cleaner_.estimateGround();
     if (cleaner_.needsEncoding()) {
-      passOverSpool(
-          "encoding", [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.encode(s.view); });
+      pass(
+          "encoding", [&](ReadScan& s) { return placed_.next(s.view.placed, Part::kHeights); },
+          [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.encode(s.view); });
     }
-    passOverSpool(
-        "comparing", [&](ReadScan& s) { cleaner_.look(s.view); },
+    pass(
+        "comparing", [&](ReadScan& s) { return placed_.next(s.view.placed); },
+        [&](ReadScan& s) { cleaner_.look(s.view); },
         [&](const ReadScan& s) { cleaner_.add(s.view); });
     cleaner_.segmentGround();
     write();
@@ -178,10 +182,12 @@ class OfflineRun {
   }
 
  private:
+  using Part = PlacedSpool::Part;
+
   bool nextScan(SourceScan& scan);
   void observe();
-  template <typename Work, typename Use>
-  void passOverSpool(const std::string& name, Work work, Use use);
+  template <typename Read, typename Work, typename Use>
+  void pass(const std::string& name, Read read, Work work, Use use);
   void write();
   void prepareWriting(ReadScan& read);
   void writeScan(const ReadScan& read);
@@ -194,7 +200,8 @@ class OfflineRun {
   const ProgressListener& progress_;
   std::deque<SourceScan> read_ahead_;  ///< the first scans, until observe() takes them
   MapCleaner cleaner_;
-  ScanSpool spool_;
+  ScanSpool spool_;     ///< the scans as they came, for writing
+  PlacedSpool placed_;  ///< the same scans in the map, for the passes between
   Evaluator evaluator_;
   OfflineReport report_;
   bool labelled_ = true;  ///< until a scan without labels comes
@@ -244,6 +251,7 @@ void OfflineRun::observe() {
         cleaner_.observe(read.view);
         StageClock clock(report_.stages);
         spool_.append(read.source);
+        placed_.append(read.view.placed);
         clock.lap("spool");
         ++report_.scans;
         report_.points += read.scan.cloud.size();
@@ -259,21 +267,15 @@ void OfflineRun::observe() {
   throw InputError("no scan can be used" + (reasons.empty() ? ": the input is empty" : reasons));
 }
 
-/// Calls work(scan), in threads, and use(scan), in order, for each scan when it is placed.
-template <typename Work, typename Use>
-void OfflineRun::passOverSpool(const std::string& name, Work work, Use use) {
-  progress_.begin(name, spool_.size());
-  spool_.rewind();
-  runPipeline([&](ReadScan& read) { return spool_.next(read.source); },
-              [&](ReadScan& read) {
-                convertScan(read.source, read.scan);
-                cleaner_.place(read.scan, read.view);
-                work(read);
-              },
-              [&](const ReadScan& read) {
-                use(read);
-                progress_.step();
-              });
+/// Reads the scans once more, see runPipeline().
+template <typename Read, typename Work, typename Use>
+void OfflineRun::pass(const std::string& name, Read read, Work work, Use use) {
+  progress_.begin(name, placed_.size());
+  placed_.rewind();
+  runPipeline(read, work, [&](const ReadScan& scan) {
+    use(scan);
+    progress_.step();
+  });
 }
 
 void OfflineRun::write() {
@@ -285,8 +287,13 @@ void OfflineRun::write() {
   top_view_ = std::make_unique<TopView>(extent.low, extent.high - extent.low);
   cleaned_ = std::make_unique<PointFile>(options_.output + "/cleaned.pcd", options_.voxel_m);
   dynamic_ = std::make_unique<PointFile>(options_.output + "/dynamic.pcd", options_.voxel_m);
-  passOverSpool(
-      "writing", [&](ReadScan& read) { prepareWriting(read); },
+  spool_.rewind();
+  pass(
+      "writing",
+      [&](ReadScan& read) {
+        return placed_.next(read.view.placed, Part::kHeights) && spool_.next(read.source);
+      },
+      [&](ReadScan& read) { prepareWriting(read); },
       [&](const ReadScan& read) { writeScan(read); });
   cleaned_->close(output_layout_);
   dynamic_->close(output_layout_);

@@ -88,7 +88,8 @@ std::vector<PointStore::NewPoint> PointStore::newPoints(const PlacedScan& placed
         // Neighbouring beams often end in the same voxel.
         if (!points.empty() && points.back().tile == tile && points.back().voxel == voxel) continue;
       }
-      points.push_back({tile, voxel, placed.source_index[i], in_tile, placed.z[i]});
+      points.push_back(
+          {tile, voxel, static_cast<std::uint32_t>(placed.sourceOf(i)), in_tile, placed.z[i]});
     }
   }
   if (voxel_m_ == 0.0) return points;

@@ -140,6 +140,36 @@ TEST(BinaryEncoding, AScanSetsExactlyTheBitsOfItsPoints) {
   }
 }
 
+/// Points of one column, mostly within one cell.
+PlacedScan randomRun(Random& random) {
+  std::vector<Eigen::Vector3d> points;
+  const double z = random.uniform(-2.0, 30.0);
+  const double extent = random.pick<double>({0.0, 0.05, 0.5, 20.0});
+  for (int i = random.integer(1, 20); i > 0; --i) {
+    points.emplace_back(0.25, 0.25, z + random.uniform(0.0, extent));
+  }
+  return test::placedScan({0, 0}, {0.0, 0.0, 0.0}, points);
+}
+
+TEST(BinaryEncoding, ARunHasTheBitsOfEachOfItsPoints) {
+  for (std::uint32_t seed = 0; seed < 500; ++seed) {
+    Random random(seed);
+    const PlacedScan scan = randomRun(random);
+    ASSERT_EQ(scan.runs.size(), 1U);
+    const MatrixConfig config = matrixConfig(0.5, 0.2, random.integer(2, kMaxBits));
+    const BinaryEncoding encoding(config);
+    const HeightBins height_bins(config);
+    const float ground = random.chance(0.1) ? Tile::kNoHeight : scan.z[0] - 1.0F;
+    Bits bits = 0, bins = 0;
+    for (const float z : scan.z) {
+      bits |= encoding.bit(z, ground);
+      bins |= height_bins.bin(z);
+    }
+    EXPECT_EQ(encoding.bits(scan, scan.runs[0], ground), bits) << "seed " << seed;
+    EXPECT_EQ(height_bins.bins(scan, scan.runs[0]), bins) << "seed " << seed;
+  }
+}
+
 TEST(ColumnGrid, FloorToIntIsFloor) {
   Random random(7);
   for (int i = 0; i < 10000; ++i) {

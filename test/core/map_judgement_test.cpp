@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "core/test_scenes.h"
 
 namespace beautymap {
@@ -58,6 +60,39 @@ TEST(MapJudgement, JudgingWhatChangedEqualsJudgingEverything) {
       });
       EXPECT_GT(dynamic_columns, 0);
     }
+  }
+}
+
+/// Runs near the ground of several columns; one column is known to be flat.
+TEST(MapJudgement, CountsTheGroundPointsOfRunsAsPointByPoint) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    Config config;
+    config.ground_layer.enabled = random.chance(0.5);
+    const MapJudgement judgement(config);
+    std::vector<Eigen::Vector3d> points;
+    for (int run = 0; run < 200; ++run) {
+      const double x = random.uniform(0.0, 8.0), z = random.uniform(-0.5, 1.5);
+      const double extent = random.pick<double>({0.0, 0.02, 1.0});
+      for (int i = random.integer(1, 5); i > 0; --i) {
+        points.emplace_back(x, 0.25, z + random.uniform(0.0, extent));
+      }
+    }
+    const PlacedScan scan = test::placedScan({0, 0}, {0.0, 0.0, 0.0}, points);
+    std::vector<Eigen::Vector3d> alone;  // the same points, no two of a column in a row
+    for (const Eigen::Vector3d& point : points) {
+      alone.push_back(point);
+      alone.emplace_back(9.25, 9.25, 9.0);
+    }
+    const PlacedScan single = test::placedScan({0, 0}, {0.0, 0.0, 0.0}, alone);
+    TileMap of_runs(judgement.fineBins()), of_points(judgement.fineBins());
+    for (TileMap* map : {&of_runs, &of_points}) {
+      map->tileAt({0, 0}).ground.fill(-judgement.belowGround());
+      map->tileAt({0, 0}).flat.set(3 << Tile::kShift);
+    }
+    judgement.countGroundPoints(of_runs, scan);
+    judgement.countGroundPoints(of_points, single);
+    EXPECT_EQ(of_runs.tileAt({0, 0}).fine_counts, of_points.tileAt({0, 0}).fine_counts);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -63,7 +64,7 @@ TEST(Scan, PointsKeepTheirMillimetresAnywhereInTheWorld) {
       EXPECT_EQ(placed.anchor, columnOf(scan.sensor_in_map, res_g));
       for (std::size_t i = 0; i < placed.size(); ++i) {
         const Eigen::Vector3d expected =
-            movedInDouble(scan, placed.source_index[i], placed.anchor, res_g, z_origin);
+            movedInDouble(scan, placed.sourceOf(i), placed.anchor, res_g, z_origin);
         // Some ten roundings of numbers of up to 120 m in float, 4e-6 m each.
         ASSERT_LT((placed.point(i).cast<double>() - expected).norm(), 1e-4);
       }
@@ -139,8 +140,8 @@ TEST(Scan, LargeCloudsKeepTheirUsablePointsInOrder) {
     config.max_range = 1e4;
     DroppedPoints dropped;
     const PlacedScan placed = placeScan(scan, 0.0, 1.0, config, dropped);
-    EXPECT_EQ(placed.source_index, expected);
     ASSERT_EQ(placed.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(placed.sourceOf(i), expected[i]);
     EXPECT_EQ(placed.cloud_size, scan.cloud.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
       ASSERT_EQ(placed.point(i), Eigen::Vector3f(static_cast<float>(expected[i] + 1), 2.0F, -1.0F));
@@ -161,14 +162,18 @@ TEST(Scan, RunsAreTheConsecutivePointsOfAColumn) {
       y += random.uniform(-step, step);
       placed.x.push_back(static_cast<float>(x));
       placed.y.push_back(static_cast<float>(y));
-      placed.z.push_back(0.0F);
+      placed.z.push_back(static_cast<float>(random.uniform(-1.0, 1.0)));
     }
-    placed.runs = {{1, 2, 3, 4}};  // of a scan before
+    placed.runs = {{1, 2, 3, 4, 5.0F, 6.0F}};  // of a scan before
     findRuns(placed, res_g);
     std::uint32_t next = 0;
     for (const ColumnRun& run : placed.runs) {
       ASSERT_EQ(run.begin, next);
       ASSERT_LT(run.begin, run.end);
+      const auto [lowest, highest] =
+          std::minmax_element(placed.z.begin() + run.begin, placed.z.begin() + run.end);
+      ASSERT_EQ(run.lowest, *lowest);
+      ASSERT_EQ(run.highest, *highest);
       for (std::uint32_t i = run.begin; i < run.end; ++i) {
         ASSERT_EQ(run.x, static_cast<int>(std::floor(placed.x[i] / static_cast<float>(res_g))));
         ASSERT_EQ(run.y, static_cast<int>(std::floor(placed.y[i] / static_cast<float>(res_g))));

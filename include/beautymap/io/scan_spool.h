@@ -4,23 +4,20 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
 
 #include "beautymap/io/scan_source.h"
+#include "beautymap/io/temporary_file.h"
 
 namespace beautymap {
 
 /// A temporary file of scans, for a source that is slow to read (compressed bags, text files) and
-/// wanted several times; more may be appended while it is read. All scans have the fields of the
-/// first one. The file has no name: it is
-/// gone with the process, however that ends.
+/// wanted again; more may be appended while it is read. All scans have the fields of the first one.
 class ScanSpool {
  public:
   /// @param folder  where the file is made; it needs the room of the uncompressed scans
   /// @throws InputError when no file can be made there.
-  explicit ScanSpool(const std::string& folder);
+  explicit ScanSpool(const std::string& folder) : file_(folder) {}
 
   /// Whether the scan has the fields of those before; append() takes only such ones.
   bool accepts(const SourceScan& scan) const;
@@ -32,12 +29,7 @@ class ScanSpool {
   std::size_t size() const { return size_; }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-
-  std::string folder_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  TemporaryFile file_;
   pcl::PCLPointCloud2 layout_;  ///< fields of the first scan, no points
   std::size_t size_ = 0;
   std::size_t read_ = 0;
