@@ -52,13 +52,31 @@ bool GroundLayer::standsOut(const std::uint32_t* counts) const {
   return mean(cell_begin_, cell_end_) >= min_contrast_ * mean(cell_end_, above_end_);
 }
 
+bool mayBeObject(const ColumnEvidence& evidence, Bits dynamic, double min_contrast, int ground_bit,
+                 const EvidenceConfig& config) {
+  if (evidence.isStrong(ground_bit, config)) return true;
+  if (evidence.hits(ground_bit) > config.unknown_hits) return false;
+  // Noise of the poses spreads a ground over so many cells that no object was above.
+  constexpr int kSpread = 3;
+  int low = 0, high = 0;
+  for (int bit = ground_bit; bit < kMaxBits; ++bit) {
+    if (bit < ground_bit + kSpread) {
+      low = std::max(low, evidence.hits(bit));
+    } else if ((dynamic >> bit & 1) != 0) {
+      high = std::max(high, evidence.hits(bit));
+    }
+  }
+  return low < min_contrast * high;
+}
+
 int groundBinsOf(const Tile& tile, std::size_t column, Bits dynamic, const GroundLayer& layer,
                  int ground_bit, const EvidenceConfig& evidence) {
   const std::uint32_t* counts =
       tile.fine_counts.data() + column * static_cast<std::size_t>(layer.bins());
   const bool object_above = (dynamic >> (ground_bit + 1) & 1) != 0;
-  const bool is_ground = !object_above || !tile.evidence[column].isStrong(ground_bit, evidence) ||
-                         layer.standsOut(counts);
+  const bool is_ground = !object_above || layer.standsOut(counts) ||
+                         !mayBeObject(tile.evidence[column], dynamic, layer.minContrast(),
+                                      ground_bit, evidence);
   return is_ground ? layer.groundBins(counts, object_above) : 0;
 }
 

@@ -35,6 +35,7 @@ class GroundLayer {
   /// Whether the ground cell holds so many more points than the one above that a surface is in it,
   /// and not just the lower end of an object in a column whose ground no beam ever met.
   bool standsOut(const std::uint32_t* counts) const;
+  double minContrast() const { return min_contrast_; }
 
  private:
   int bins_;
@@ -51,9 +52,16 @@ class GroundLayer {
   int above_end_;
 };
 
+/// Whether the ground cell below an object may hold the object's lower end and no ground: its own
+/// evidence for that is strong; or it is hardly known, and the lowest cells were hit in less than
+/// min_contrast times the scans that hit the object above them. So a flight of stairs is seen from
+/// below, where no beam meets the steps: people's feet are the lowest points then.
+bool mayBeObject(const ColumnEvidence& evidence, Bits dynamic, double min_contrast, int ground_bit,
+                 const EvidenceConfig& config);
+
 /// How many bins of a column with these dynamic cells are ground. None where all speaks against
-/// ground: the cell above is dynamic, the ground cell itself has strong evidence, and no surface
-/// stands out in it.
+/// ground: the cell above is dynamic, the ground cell may be of an object, and no surface stands
+/// out in it.
 int groundBinsOf(const Tile& tile, std::size_t column, Bits dynamic, const GroundLayer& layer,
                  int ground_bit, const EvidenceConfig& evidence);
 

@@ -296,5 +296,39 @@ TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
   EXPECT_GT(objects, 50);
 }
 
+/// A column whose cells were hit in so many scans, from the ground cell up.
+ColumnEvidence hitColumn(int ground_bit, const std::vector<int>& hits) {
+  ColumnEvidence evidence;
+  for (int scan = 0; scan < *std::max_element(hits.begin(), hits.end()); ++scan) {
+    Bits hit = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (scan < hits[i]) hit |= Bits{1} << (static_cast<std::size_t>(ground_bit) + i);
+    }
+    evidence.observe(hit, 0);
+  }
+  return evidence;
+}
+
+TEST(GroundLayer, TheLowestCellOfATallObjectMayBeTheObjectsWhereItWasHitAsSeldom) {
+  constexpr int kGroundBit = 8;
+  const EvidenceConfig config;
+  const Bits tall = Bits{0x3E} << kGroundBit;  // five cells above the ground cell
+  const auto may_be_object = [&](const std::vector<int>& hits, Bits dynamic) {
+    return mayBeObject(hitColumn(kGroundBit, hits), dynamic, 4.0, kGroundBit, config);
+  };
+  EXPECT_TRUE(may_be_object({3, 3, 3, 3, 3, 2}, tall));
+  EXPECT_FALSE(may_be_object({12, 3, 3, 3, 3, 2}, tall)) << "the ground was hit four times as often";
+  EXPECT_FALSE(may_be_object({3, 3, 12, 3, 3, 2}, tall)) << "noise of the poses lifts it";
+  EXPECT_FALSE(may_be_object({3, 3, 3}, Bits{0x6} << kGroundBit)) << "only noise is so low";
+  EXPECT_FALSE(may_be_object({13, 9, 9, 9, 9, 9}, tall)) << "it is well known";
+}
+
+TEST(GroundLayer, StrongEvidenceIsEnoughForTheLowestCellToBeOfAnObject) {
+  ColumnEvidence evidence;
+  evidence.observe(1, 0);
+  for (int scan = 0; scan < 2; ++scan) evidence.observe(0, 1);
+  EXPECT_TRUE(mayBeObject(evidence, 2, 4.0, 0, EvidenceConfig()));
+}
+
 }  // namespace
 }  // namespace beautymap
