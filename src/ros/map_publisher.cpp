@@ -4,6 +4,7 @@
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <pcl_conversions/pcl_conversions.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -51,6 +52,8 @@ void MapPublisher::configure(double period_s, double voxel_m) {
 }
 
 void MapPublisher::run() {
+  // Of this thread only. It holds a lock of the map for moments, so that no scan waits for it.
+  ::setpriority(PRIO_PROCESS, 0, 10);
   auto last = std::chrono::steady_clock::now();
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_) {
