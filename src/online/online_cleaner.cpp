@@ -27,12 +27,24 @@ Config withinRadius(Config config) {
 
 }  // namespace
 
-/// Lets scans that wait go first: a mutex alone would give a reader of many tiles the lock again
-/// and again.
+/// For the thread that adds scans, and for what is quick: goes before those who read many tiles. A
+/// mutex alone would give these the lock again and again.
+class OnlineCleaner::FirstLock {
+ public:
+  explicit FirstLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
+    ++cleaner.first_waiting_;
+    lock_.lock();
+    --cleaner.first_waiting_;
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
 class OnlineCleaner::ReaderLock {
  public:
   explicit ReaderLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
-    while (cleaner.scans_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    while (cleaner.first_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
     lock_.lock();
   }
   /// What the last scan saw free is judged with the next scan, unless somebody asks before.
@@ -70,9 +82,7 @@ OnlineCleaner::~OnlineCleaner() {
 const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
   Scan scan;
   convertScan(source, scan);
-  ++scans_waiting_;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  --scans_waiting_;
+  const FirstLock lock(*this);
   if (!started_) {
     setCellSize(cellSizeFor(scan, config_).value_or(config_.matrix.res_g));
     float64_ =
@@ -94,9 +104,7 @@ void OnlineCleaner::setCellSize(double res_g) {
 }
 
 void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
-  ++scans_waiting_;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  --scans_waiting_;
+  const FirstLock lock(*this);
   // The points and the matrix have nothing in common: two threads share the time.
   auto stored = std::async(std::launch::async, [&] {
     points_.add(map_.placed(), scan.cloud, scan.T_map_cloud, float64_);
@@ -179,10 +187,10 @@ std::vector<ColumnIndex> OnlineCleaner::tiles() const {
 }
 
 bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
-  // As it was judged at one moment; the points are then taken in portions, so that no scan waits
-  // for a tile of a million points.
+  // As it was judged at one moment; the points are then copied in portions and judged without the
+  // lock, so that no scan waits for a tile of a million points.
   Tile judged(0);
-  TilePoints stored_points;
+  TilePoints portion;
   bool on_disk = false;
   std::size_t size = 0;
   {
@@ -191,10 +199,10 @@ bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
     on_disk = on_disk_.count({index.x, index.y}) != 0;
     if (on_disk) {
       judged = Tile(map_.map().fineBins());
-      fetch(index, judged, stored_points);
+      fetch(index, judged, portion);
     }
     const Tile* tile = on_disk ? &judged : std::as_const(map_).map().findTile(index);
-    const TilePoints* points = on_disk ? &stored_points : points_.findTile(index);
+    const TilePoints* points = on_disk ? &portion : points_.findTile(index);
     if (tile == nullptr || points == nullptr) return false;
     size = points->size();
     // Both only grow.
@@ -205,34 +213,55 @@ bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
   }
   view.cleaned.clear();
   view.removed.clear();
-  const auto take = [&](const TilePoints& points, std::size_t begin, std::size_t end) {
-    const std::size_t step = points.records.size() / points.size();
-    for (std::size_t i = begin; i < end; ++i) {
-      auto& records =
-          map_.isDynamic(judged, points.column[i], points.z[i]) ? view.removed : view.cleaned;
-      const std::uint8_t* record = points.records.data() + i * step;
-      records.insert(records.end(), record, record + step);
-    }
-  };
   if (on_disk) {
-    take(stored_points, 0, size);
+    take(portion, judged, view);
     return true;
   }
-  constexpr std::size_t kPortion = 10000;  // points: less than a millisecond
-  bool written_to_disk = false;            // meanwhile
-  for (std::size_t begin = 0; begin < size && !written_to_disk; begin += kPortion) {
-    const ReaderLock lock(*this);
-    const TilePoints* points = points_.findTile(index);
-    written_to_disk = points == nullptr;
-    if (!written_to_disk) take(*points, begin, std::min(begin + kPortion, size));
+  constexpr std::size_t kPortion = 10000;  // points: some hundredths of a millisecond
+  for (std::size_t begin = 0; begin < size; begin += kPortion) {
+    if (!copyPoints(index, begin, std::min(begin + kPortion, size), portion)) {
+      view = TileView();  // written to disk meanwhile
+      return look(index, view);
+    }
+    take(portion, judged, view);
   }
-  if (!written_to_disk) return true;
-  view = TileView();
-  return look(index, view);
+  return true;
+}
+
+bool OnlineCleaner::copyPoints(ColumnIndex tile, std::size_t begin, std::size_t end,
+                               TilePoints& copy) const {
+  const ReaderLock lock(*this);
+  const TilePoints* points = points_.findTile(tile);
+  if (points == nullptr) return false;
+  const std::size_t step = points->records.size() / points->size();
+  const auto copyRange = [&](const auto& from, auto& to, std::size_t values) {
+    to.assign(from.data() + begin * values, from.data() + end * values);
+  };
+  copyRange(points->records, copy.records, step);
+  copyRange(points->column, copy.column, 1);
+  copyRange(points->z, copy.z, 1);
+  return true;
+}
+
+void OnlineCleaner::take(const TilePoints& points, const Tile& judged, TileView& view) const {
+  if (points.size() == 0) return;
+  const std::size_t step = points.records.size() / points.size();
+  for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+    // A run of points that are judged alike.
+    const auto isDynamic = [&](std::size_t i) {
+      return map_.isDynamic(judged, points.column[i], points.z[i]);
+    };
+    const bool dynamic = isDynamic(begin);
+    for (end = begin + 1; end < points.size() && isDynamic(end) == dynamic; ++end) {
+    }
+    auto& records = dynamic ? view.removed : view.cleaned;
+    const std::uint8_t* record = points.records.data();
+    records.insert(records.end(), record + begin * step, record + end * step);
+  }
 }
 
 pcl::PCLPointCloud2 OnlineCleaner::layout() const {
-  const ReaderLock lock(*this);
+  const FirstLock lock(*this);
   return points_.layout();
 }
 
@@ -294,7 +323,7 @@ std::string OnlineCleaner::loadSession(const std::string& path) {
 }
 
 OnlineCleaner::Size OnlineCleaner::size() const {
-  const ReaderLock lock(*this);
+  const FirstLock lock(*this);
   Size size;
   size.points = points_.size();
   for (const auto& tile : on_disk_) size.points += tile.second;
@@ -307,12 +336,12 @@ OnlineCleaner::Size OnlineCleaner::size() const {
 }
 
 DroppedPoints OnlineCleaner::dropped() const {
-  const ReaderLock lock(*this);
+  const FirstLock lock(*this);
   return map_.dropped();
 }
 
 StageTimes OnlineCleaner::times() const {
-  const ReaderLock lock(*this);
+  const FirstLock lock(*this);
   return map_.times();
 }
 

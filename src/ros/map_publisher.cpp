@@ -4,9 +4,11 @@
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <pcl_conversions/pcl_conversions.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 
 namespace beautymap {
 namespace {
@@ -22,8 +24,12 @@ constexpr std::int8_t kStatic = 100;
 MapPublisher::MapPublisher(ros::NodeHandle& private_nh, Source source, double matrix_size_m)
     : source_(std::move(source)),
       matrix_size_m_(matrix_size_m),
-      cleaned_(private_nh.advertise<sensor_msgs::PointCloud2>("cleaned_map", 1, true)),
-      removed_(private_nh.advertise<sensor_msgs::PointCloud2>("removed_points", 1, true)),
+      cleaned_{private_nh.advertise<sensor_msgs::PointCloud2>("cleaned_map", 1, true),
+               &OnlineCleaner::TileView::cleaned,
+               {}},
+      removed_{private_nh.advertise<sensor_msgs::PointCloud2>("removed_points", 1, true),
+               &OnlineCleaner::TileView::removed,
+               {}},
       matrix_(private_nh.advertise<nav_msgs::OccupancyGrid>("matrix", 1, true)),
       thread_([this] { run(); }) {}
 
@@ -46,6 +52,8 @@ void MapPublisher::configure(double period_s, double voxel_m) {
 }
 
 void MapPublisher::run() {
+  // Of this thread only. It holds a lock of the map for moments, so that no scan waits for it.
+  ::setpriority(PRIO_PROCESS, 0, 10);
   auto last = std::chrono::steady_clock::now();
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_) {
@@ -68,8 +76,8 @@ void MapPublisher::run() {
 }
 
 void MapPublisher::publish() {
-  const bool wants_cleaned = cleaned_.getNumSubscribers() > 0;
-  const bool wants_removed = removed_.getNumSubscribers() > 0;
+  const bool wants_cleaned = cleaned_.publisher.getNumSubscribers() > 0;
+  const bool wants_removed = removed_.publisher.getNumSubscribers() > 0;
   const auto [cleaner, frame] = source_();
   if (!cleaner) return;
   if (wants_cleaned || wants_removed) {
@@ -84,13 +92,10 @@ void MapPublisher::publish() {
     update(*cleaner, voxel_m);
   } else {
     views_.clear();
+    for (CloudTopic* topic : {&cleaned_, &removed_}) topic->serializer.release();
   }
-  if (wants_cleaned) {
-    cleaned_.publish(assemble(*cleaner, frame, &OnlineCleaner::TileView::cleaned));
-  }
-  if (wants_removed) {
-    removed_.publish(assemble(*cleaner, frame, &OnlineCleaner::TileView::removed));
-  }
+  if (wants_cleaned) publishCloud(cleaned_, *cleaner, frame);
+  if (wants_removed) publishCloud(removed_, *cleaner, frame);
   if (matrix_.getNumSubscribers() > 0) publishMatrix(*cleaner, frame);
 }
 
@@ -104,28 +109,23 @@ void MapPublisher::update(const OnlineCleaner& cleaner, double voxel_m) {
   }
 }
 
-sensor_msgs::PointCloud2Ptr MapPublisher::assemble(
-    const OnlineCleaner& cleaner, const std::string& frame,
-    std::vector<std::uint8_t> OnlineCleaner::TileView::*records) {
+void MapPublisher::publishCloud(CloudTopic& topic, const OnlineCleaner& cleaner,
+                                const std::string& frame) {
   const pcl::PCLPointCloud2 layout = cleaner.layout();
-  auto message = boost::make_shared<sensor_msgs::PointCloud2>();
-  message->header.frame_id = frame;
-  message->header.stamp = ros::Time::now();
-  pcl_conversions::fromPCL(layout.fields, message->fields);
-  message->point_step = layout.point_step;
-  message->height = 1;
-  message->is_dense = true;
-  std::size_t bytes = 0;
-  for (const auto& view : views_) bytes += (view.second.*records).size();
-  message->data.reserve(bytes);
-  for (const auto& view : views_) {
-    const auto& of_tile = view.second.*records;
-    message->data.insert(message->data.end(), of_tile.begin(), of_tile.end());
+  sensor_msgs::PointCloud2 head;
+  head.header.frame_id = frame;
+  head.header.stamp = ros::Time::now();
+  pcl_conversions::fromPCL(layout.fields, head.fields);
+  head.point_step = layout.point_step;
+  head.is_dense = true;
+  std::vector<const std::vector<std::uint8_t>*> parts;
+  for (const auto& view : views_) parts.push_back(&(view.second.*topic.records));
+  try {
+    topic.publisher.publish(topic.serializer.serialize(head, parts));
+  } catch (const std::length_error& error) {
+    ROS_WARN_THROTTLE(5.0, "%s is not published: %s; raise ~publish_voxel (%g m)",
+                      topic.publisher.getTopic().c_str(), error.what(), shown_voxel_m_);
   }
-  message->row_step = static_cast<std::uint32_t>(bytes);
-  message->width =
-      layout.point_step == 0 ? 0 : static_cast<std::uint32_t>(bytes / layout.point_step);
-  return message;
 }
 
 void MapPublisher::publishMatrix(const OnlineCleaner& cleaner, const std::string& frame) {

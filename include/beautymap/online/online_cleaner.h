@@ -80,6 +80,7 @@ class OnlineCleaner {
   StageTimes times() const;
 
  private:
+  class FirstLock;
   class ReaderLock;
   /// With the size of the cells that the place asks for.
   const Config& config() const { return map_.config(); }
@@ -90,6 +91,10 @@ class OnlineCleaner {
   double distance(ColumnIndex tile, const Eigen::Vector3d& sensor) const;
   std::string fileOf(ColumnIndex tile) const;
   void fetch(ColumnIndex index, Tile& tile, TilePoints& points) const;
+  /// @return false when the tile is not in memory any more
+  bool copyPoints(ColumnIndex tile, std::size_t begin, std::size_t end, TilePoints& copy) const;
+  /// Appends the points to what a view shows.
+  void take(const TilePoints& points, const Tile& judged, TileView& view) const;
   TileFileWriter::Header header(const std::string& map_frame) const;
 
   Config config_;  ///< as it was given
@@ -101,7 +106,7 @@ class OnlineCleaner {
   bool float64_ = false;
   bool started_ = false;
   mutable std::mutex mutex_;
-  mutable std::atomic<int> scans_waiting_{0};
+  mutable std::atomic<int> first_waiting_{0};  ///< in FirstLock
 };
 
 /// Keeps the first record in each voxel. @param voxel_m  side [m]; 0 keeps all

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <ros/ros.h>
-#include <sensor_msgs/PointCloud2.h>
 
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,8 +13,10 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "beautymap/online/online_cleaner.h"
+#include "beautymap/ros/serialized_cloud.h"
 
 namespace beautymap {
 
@@ -34,16 +36,22 @@ class MapPublisher {
   void configure(double period_s, double voxel_m);
 
  private:
+  struct CloudTopic {
+    ros::Publisher publisher;
+    std::vector<std::uint8_t> OnlineCleaner::TileView::*records;
+    CloudSerializer serializer;
+  };
+
   void run();
   void publish();
   void update(const OnlineCleaner& cleaner, double voxel_m);
-  sensor_msgs::PointCloud2Ptr assemble(const OnlineCleaner& cleaner, const std::string& frame,
-                                       std::vector<std::uint8_t> OnlineCleaner::TileView::*records);
+  void publishCloud(CloudTopic& topic, const OnlineCleaner& cleaner, const std::string& frame);
   void publishMatrix(const OnlineCleaner& cleaner, const std::string& frame);
 
   Source source_;
   double matrix_size_m_;
-  ros::Publisher cleaned_, removed_, matrix_;
+  CloudTopic cleaned_, removed_;
+  ros::Publisher matrix_;
   std::weak_ptr<const OnlineCleaner> shown_;  ///< whose tiles are in views_
   std::map<std::pair<std::int32_t, std::int32_t>, OnlineCleaner::TileView> views_;
   double shown_voxel_m_ = -1.0;
