@@ -74,9 +74,9 @@ int groundBinsOf(const Tile& tile, std::size_t column, Bits dynamic, const Groun
   const std::uint32_t* counts =
       tile.fine_counts.data() + column * static_cast<std::size_t>(layer.bins());
   const bool object_above = (dynamic >> (ground_bit + 1) & 1) != 0;
-  const bool is_ground = !object_above || layer.standsOut(counts) ||
-                         !mayBeObject(tile.evidence[column], dynamic, layer.minContrast(),
-                                      ground_bit, evidence);
+  const bool is_ground =
+      !object_above || layer.standsOut(counts) ||
+      !mayBeObject(tile.evidence[column], dynamic, layer.minContrast(), ground_bit, evidence);
   return is_ground ? layer.groundBins(counts, object_above) : 0;
 }
 

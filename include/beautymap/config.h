@@ -132,9 +132,9 @@ struct GroundLayerConfig {
       "below a moving object a peak in the ground cell is the ground if it has this share of the "
       "highest");
     v("min_contrast", min_contrast, 0.0, 100.0, "",
-      "a ground cell that was itself seen free or seldom hit, below a moving object, is ground only "
-      "if it holds this many times the points of the cell above; where it was seldom hit, that many "
-      "times the object's hits will do, too");
+      "a ground cell that was itself seen free or seldom hit, below a moving object, is "
+      "ground only if it holds this many times the points of the cell above; where it was "
+      "seldom hit, that many times the object's hits will do, too");
   }
 };
 

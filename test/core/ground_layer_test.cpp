@@ -317,7 +317,8 @@ TEST(GroundLayer, TheLowestCellOfATallObjectMayBeTheObjectsWhereItWasHitAsSeldom
     return mayBeObject(hitColumn(kGroundBit, hits), dynamic, 4.0, kGroundBit, config);
   };
   EXPECT_TRUE(may_be_object({3, 3, 3, 3, 3, 2}, tall));
-  EXPECT_FALSE(may_be_object({12, 3, 3, 3, 3, 2}, tall)) << "the ground was hit four times as often";
+  EXPECT_FALSE(may_be_object({12, 3, 3, 3, 3, 2}, tall))
+      << "the ground was hit four times as often";
   EXPECT_FALSE(may_be_object({3, 3, 12, 3, 3, 2}, tall)) << "noise of the poses lifts it";
   EXPECT_FALSE(may_be_object({3, 3, 3}, Bits{0x6} << kGroundBit)) << "only noise is so low";
   EXPECT_FALSE(may_be_object({13, 9, 9, 9, 9, 9}, tall)) << "it is well known";
