@@ -56,7 +56,8 @@ bool mayBeObject(const ColumnEvidence& evidence, Bits dynamic, double min_contra
                  const EvidenceConfig& config) {
   if (evidence.isStrong(ground_bit, config)) return true;
   if (evidence.hits(ground_bit) > config.unknown_hits) return false;
-  // Noise of the poses spreads a ground over so many cells that no object was above.
+  // Noise of the poses spreads a ground over up to so many cells; what is dynamic above them is the
+  // object.
   constexpr int kSpread = 3;
   int low = 0, high = 0;
   for (int bit = ground_bit; bit < kMaxBits; ++bit) {
