@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
+
+#include "vector_clones.h"
 
 namespace beautymap {
 namespace {
@@ -17,9 +18,12 @@ constexpr double kCellRadii = 2.0;
 // Neighbouring cells share a cube of 8 x 8 x 8, to be near each other in memory, too.
 constexpr int kCubeShift = 3;
 constexpr std::size_t kShelves = 256;
-// 128 KB and 4 MB.
-constexpr std::size_t kCubeWords = std::size_t{1} << 14;
-constexpr std::size_t kCubeLines = std::size_t{1} << 16;
+// 4 MB.
+constexpr std::size_t kLines = std::size_t{1} << 16;
+// Of the indices of a near cell: 4 MB.
+constexpr std::uint32_t kNearBits = 10, kNearBitsUp = 5;
+// Points that are shown together.
+constexpr std::size_t kBlock = 256;
 // Of a shelf; equal points are first merged when it is full.
 constexpr std::size_t kMinCapacity = 2048;
 
@@ -50,6 +54,35 @@ std::uint64_t hashOf(std::uint64_t key) {
   return key ^ (key >> 29);
 }
 
+/// Index of a near cell on one axis, counted from far below. It never falls where the coordinate
+/// rises; beyond what it can count, and for what is not a number, it is the limit.
+std::uint32_t nearIndex(double coordinate, double cells_per_m) {
+  constexpr double kHalf = 1 << 30;
+  const double index = coordinate * cells_per_m + kHalf;
+  const double bounded = std::max(0.0, std::min(2.0 * kHalf - 1.0, index));
+  return static_cast<std::uint32_t>(static_cast<std::int32_t>(bounded));
+}
+
+/// Its place among all bits. A word has 4 x 4 x 4 cells: that of the next point is mostly the same.
+std::uint32_t nearBit(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  constexpr std::uint32_t kAxis = (1U << kNearBits) - 1, kAxisUp = (1U << kNearBitsUp) - 1;
+  x &= kAxis;
+  y &= kAxis;
+  z &= kAxisUp;
+  const std::uint32_t word = ((x >> 2) << (kNearBits - 2) | y >> 2) << (kNearBitsUp - 2) | z >> 2;
+  return word << 6 | (x & 3) << 4 | (y & 3) << 2 | (z & 3);
+}
+
+BEAUTYMAP_VECTOR_CLONES
+void findNearBits(const Eigen::Vector3d* points, std::size_t count, double cells_per_m,
+                  std::uint32_t* bits) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d& p = points[i];
+    bits[i] = nearBit(nearIndex(p.x(), cells_per_m), nearIndex(p.y(), cells_per_m),
+                      nearIndex(p.z(), cells_per_m));
+  }
+}
+
 std::uint64_t hashOfCube(std::uint64_t cell) { return hashOf(cell >> (3 * kCubeShift)); }
 
 double percent(std::uint64_t part, std::uint64_t all) {
@@ -63,11 +96,14 @@ double Score::DA() const { return percent(dynamic_points - kept_dynamic, dynamic
 double Score::AA() const { return std::sqrt(SA() * DA()); }
 double Score::HA() const { return SA() + DA() > 0.0 ? 2.0 * SA() * DA() / (SA() + DA()) : 0.0; }
 
-Evaluator::Evaluator(double radius_m) : radius_m_(radius_m), shelves_(kShelves) {
+Evaluator::Evaluator(double radius_m)
+    : radius_m_(radius_m),
+      cells_per_m_(1.0 / (kCellRadii * radius_m)),
+      shelves_(kShelves),
+      near_(radius_m) {
   if (!(radius_m >= 1e-6) || !std::isfinite(radius_m)) {
     throw std::invalid_argument("the radius must be a positive number of metres");
   }
-  cells_per_m_ = 1.0 / (kCellRadii * radius_m);
 }
 
 void Evaluator::addKept(bool moving, std::uint64_t count) {
@@ -87,43 +123,34 @@ void Evaluator::finishTruth() {
     shelf.finish();
     for (const Unmatched& unmatched : shelf.points()) {
       occupied_.insert(unmatched.cell);
-      forEachCellInReach(unmatched.point, [&](std::uint64_t cell) { near_.insert(cell); });
+      near_.insert(unmatched.point);
     }
   }
 }
 
 void Evaluator::showCleaned(const std::vector<Eigen::Vector3d>& points) {
-  // The time goes into waiting for memory. So each loop asks for what the next one needs, and those
-  // that many points come to do not branch on an answer that is hard to predict.
+  // The time goes into waiting for memory. So each loop asks for what the next one needs.
   struct Lookup {
-    std::size_t point;
+    std::uint32_t point;  ///< of the block
     std::uint64_t cell;
   };
   struct Match {
-    std::size_t point;
+    std::uint32_t point;  ///< of the block
     Shelf* shelf;
     Shelf::Run run;
   };
-  constexpr std::size_t kBlock = 256;
-  std::array<Lookup, kBlock> found;
+  std::array<std::uint32_t, kBlock> near;
   std::vector<Lookup> lookups;
   std::vector<Match> matches;
   for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < std::min(points.size(), begin + kBlock); ++i) {
-      found[count] = {i, cellOf(points[i])};
-      count += static_cast<std::size_t>(near_.mayHoldCube(found[count].cell));
-    }
-    const std::size_t in_near_cubes = std::exchange(count, 0);
-    for (std::size_t i = 0; i < in_near_cubes; ++i) {
-      found[count] = found[i];
-      count += static_cast<std::size_t>(near_.mayHold(found[i].cell));
-    }
+    const Eigen::Vector3d* block = &points[begin];
+    const std::size_t count = std::min(kBlock, points.size() - begin);
+    const std::size_t near_count = near_.select(block, count, near.data());
     lookups.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      forEachCellInReach(points[found[i].point], [&](std::uint64_t cell) {
+    for (std::size_t i = 0; i < near_count; ++i) {
+      forEachCellInReach(block[near[i]], [&](std::uint64_t cell) {
         if (!occupied_.mayHold(cell)) return;
-        lookups.push_back({found[i].point, cell});
+        lookups.push_back({near[i], cell});
         __builtin_prefetch(shelfOf(cell).firstPlace(cell));
       });
     }
@@ -135,7 +162,7 @@ void Evaluator::showCleaned(const std::vector<Eigen::Vector3d>& points) {
       matches.push_back({lookup.point, &shelf, run});
       __builtin_prefetch(&shelf.points()[run.begin]);
     }
-    for (const Match& m : matches) m.shelf->match(m.run, points[m.point], radius_m_);
+    for (const Match& m : matches) m.shelf->match(m.run, block[m.point], radius_m_);
   }
 }
 
@@ -156,11 +183,14 @@ std::uint64_t Evaluator::cellOf(const Eigen::Vector3d& point) const {
 
 template <typename F>
 void Evaluator::forEachCellInReach(const Eigen::Vector3d& point, F f) const {
-  const auto low = [&](double value) { return floorToInt64((value - radius_m_) * cells_per_m_); };
-  const auto high = [&](double value) { return floorToInt64((value + radius_m_) * cells_per_m_); };
-  for (std::int64_t x = low(point.x()); x <= high(point.x()); ++x) {
-    for (std::int64_t y = low(point.y()); y <= high(point.y()); ++y) {
-      for (std::int64_t z = low(point.z()); z <= high(point.z()); ++z) f(cellKey(x, y, z));
+  std::int64_t low[3], high[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = floorToInt64((point[axis] - radius_m_) * cells_per_m_);
+    high[axis] = floorToInt64((point[axis] + radius_m_) * cells_per_m_);
+  }
+  for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t z = low[2]; z <= high[2]; ++z) f(cellKey(x, y, z));
     }
   }
 }
@@ -243,21 +273,45 @@ void Evaluator::Shelf::addKeptTo(Score& score) const {
   }
 }
 
-Evaluator::CellSet::CellSet() : cubes_(kCubeWords), lines_(kCubeLines) {}
+Evaluator::NearCells::NearCells(double radius_m)
+    : radius_m_(radius_m),
+      cells_per_m_(1.0 / (kCellRadii * radius_m)),
+      words_(std::size_t{1} << (2 * kNearBits + kNearBitsUp - 6)) {}
 
-void Evaluator::CellSet::insert(std::uint64_t cell) {
-  const std::uint64_t hash = hashOfCube(cell);
-  cubes_[hash % kCubeWords] |= std::uint64_t{1} << (hash >> 58);
-  lines_[hash % kCubeLines].words[cell >> 6 & 7] |= std::uint64_t{1} << (cell & 63);
+void Evaluator::NearCells::insert(const Eigen::Vector3d& point) {
+  const auto low = [&](double value) { return nearIndex(value - radius_m_, cells_per_m_); };
+  const auto high = [&](double value) { return nearIndex(value + radius_m_, cells_per_m_); };
+  for (std::uint32_t x = low(point.x()); x <= high(point.x()); ++x) {
+    for (std::uint32_t y = low(point.y()); y <= high(point.y()); ++y) {
+      for (std::uint32_t z = low(point.z()); z <= high(point.z()); ++z) {
+        const std::uint32_t bit = nearBit(x, y, z);
+        words_[bit / 64] |= std::uint64_t{1} << (bit % 64);
+      }
+    }
+  }
 }
 
-bool Evaluator::CellSet::mayHoldCube(std::uint64_t cell) const {
-  const std::uint64_t hash = hashOfCube(cell);
-  return (cubes_[hash % kCubeWords] >> (hash >> 58) & 1) != 0;
+std::size_t Evaluator::NearCells::select(const Eigen::Vector3d* points, std::size_t count,
+                                         std::uint32_t* selected) const {
+  std::array<std::uint32_t, kBlock> bits;
+  findNearBits(points, count, cells_per_m_, bits.data());
+  // Without a branch, whose way would be hard to predict.
+  std::size_t found = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    selected[found] = i;
+    found += words_[bits[i] / 64] >> (bits[i] % 64) & 1;
+  }
+  return found;
+}
+
+Evaluator::CellSet::CellSet() : lines_(kLines) {}
+
+void Evaluator::CellSet::insert(std::uint64_t cell) {
+  lines_[hashOfCube(cell) % kLines].words[cell >> 6 & 7] |= std::uint64_t{1} << (cell & 63);
 }
 
 bool Evaluator::CellSet::mayHold(std::uint64_t cell) const {
-  return (lines_[hashOfCube(cell) % kCubeLines].words[cell >> 6 & 7] >> (cell & 63) & 1) != 0;
+  return (lines_[hashOfCube(cell) % kLines].words[cell >> 6 & 7] >> (cell & 63) & 1) != 0;
 }
 
 }  // namespace beautymap

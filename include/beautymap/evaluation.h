@@ -82,14 +82,30 @@ class Evaluator {
     std::vector<Run> runs_;   ///< hashed
     std::vector<std::atomic<bool>> kept_;
   };
+  /// The cells within the radius of the points, one bit each. Most points of a cleaned map are far
+  /// from all that was removed, and this tells so after a look at a bit that is mostly in a near
+  /// cache. Cells that differ only in their indices' upper bits share one.
+  class NearCells {
+   public:
+    explicit NearCells(double radius_m);
+    void insert(const Eigen::Vector3d& point);
+    /// Tells which of a block's points may have an inserted one within the radius.
+    /// @param selected  gets their places among the points; room for all
+    /// @return how many they are
+    std::size_t select(const Eigen::Vector3d* points, std::size_t count,
+                       std::uint32_t* selected) const;
+
+   private:
+    double radius_m_;
+    double cells_per_m_;
+    std::vector<std::uint64_t> words_;
+  };
   /// A set of cells that tells at once what it does not hold; cubes that share a line of bits may
   /// make it hold more.
   class CellSet {
    public:
     CellSet();
     void insert(std::uint64_t cell);
-    /// Whether a cell of the same cube may be in it; the answer is mostly in a near cache.
-    bool mayHoldCube(std::uint64_t cell) const;
     bool mayHold(std::uint64_t cell) const;
 
    private:
@@ -97,7 +113,6 @@ class Evaluator {
     struct alignas(64) Line {
       std::array<std::uint64_t, 8> words{};
     };
-    std::vector<std::uint64_t> cubes_;
     std::vector<Line> lines_;
   };
 
@@ -110,7 +125,7 @@ class Evaluator {
   double cells_per_m_;
   Score known_;  ///< all points, and those that are kept without a search
   std::vector<Shelf> shelves_;
-  CellSet near_;      ///< cells within the radius of an unmatched point
+  NearCells near_;    ///< around the unmatched points
   CellSet occupied_;  ///< cells with unmatched points
 };
 

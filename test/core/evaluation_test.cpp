@@ -111,6 +111,29 @@ TEST(Evaluation, ThreadsAndRepeatedPointsChangeNothing) {
                                   once.kept_static * kTimes, once.kept_dynamic * kTimes});
 }
 
+TEST(Evaluation, PlacesFarApartAreNotMixedUp) {
+  // 1024 x 1024 x 32 cells of twice the radius are told apart at the first look.
+  const double radius = 0.05;
+  const Eigen::Vector3d period(102.4, 102.4, 3.2);
+  Random random(3);
+  const auto point = [&] {
+    const Eigen::Vector3d far(random.pick<double>({-2, 0, 3}), random.pick<double>({-1, 0, 1}),
+                              random.pick<double>({-3, 0, 1}));
+    return Eigen::Vector3d(far.cwiseProduct(period) + Eigen::Vector3d(random.uniform(-0.3, 0.3),
+                                                                      random.uniform(-0.3, 0.3),
+                                                                      random.uniform(-0.1, 0.1)));
+  };
+  std::vector<Labelled> truth;
+  std::vector<Eigen::Vector3d> cleaned;
+  for (int i = 0; i < 2000; ++i) {
+    truth.push_back({point(), random.chance(0.3)});
+    cleaned.push_back(point());
+  }
+  const Score expected = bruteForce(truth, cleaned, radius);
+  ASSERT_GT(expected.kept_static, 0U);
+  expectEqual(evaluate(truth, cleaned, radius), expected);
+}
+
 TEST(Evaluation, APointAtExactlyTheRadiusIsNotKept) {
   EXPECT_EQ(evaluate({{{1.0, 2.0, 3.0}, false}}, {{1.25, 2.0, 3.0}}, 0.25).kept_static, 0U);
   EXPECT_EQ(evaluate({{{1.0, 2.0, 3.0}, false}}, {{1.249, 2.0, 3.0}}, 0.25).kept_static, 1U);
