@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "beautymap/io/copy_runs.h"
@@ -263,21 +264,21 @@ double FieldReader::operator()(std::size_t point) const {
   }
 }
 
-pcl::PCLPointCloud2 moveCloud(const pcl::PCLPointCloud2& cloud,
-                              const Eigen::Isometry3d& T_map_cloud, bool as_float64) {
+pcl::PCLPointCloud2 moveCloud(pcl::PCLPointCloud2 cloud, const Eigen::Isometry3d& T_map_cloud,
+                              bool as_float64) {
   pcl::PCLPointCloud2 moved;
   moveCloud(cloud, T_map_cloud, as_float64, moved);
   return moved;
 }
 
-void moveCloud(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud,
-               bool as_float64, pcl::PCLPointCloud2& moved) {
+void moveCloud(pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud, bool as_float64,
+               pcl::PCLPointCloud2& moved) {
   const std::uint8_t wanted = as_float64 ? kFloat64 : kFloat32;
   const FieldReader x(cloud, "x");
   const FieldReader y(cloud, "y");
   const FieldReader z(cloud, "z");
   if (x.datatype() == wanted && y.datatype() == wanted && z.datatype() == wanted) {
-    moved = cloud;
+    std::swap(moved, cloud);
     if (T_map_cloud.matrix() == Eigen::Matrix4d::Identity()) return;
     as_float64 ? moveInPlace<double>(moved, T_map_cloud) : moveInPlace<float>(moved, T_map_cloud);
     return;

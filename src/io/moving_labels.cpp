@@ -19,8 +19,16 @@ std::uint32_t toLabel(double value) {
 std::vector<bool> movingPoints(const pcl::PCLPointCloud2& cloud, const ScanSource& source) {
   if (!FieldReader::has(cloud, "label")) return {};
   const FieldReader label(cloud, "label");
-  std::vector<bool> moving(pointCount(cloud));
-  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = source.isMoving(toLabel(label(i)));
+  std::vector<bool> moving(pointCount(cloud), false);
+  // Neighbouring points mostly have the same label, and most do not move.
+  std::uint32_t last = 0;
+  bool last_moves = source.isMoving(last);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const std::uint32_t value = toLabel(label(i));
+    if (value != last) last_moves = source.isMoving(value);
+    last = value;
+    if (last_moves) moving[i] = true;
+  }
   return moving;
 }
 

@@ -128,6 +128,11 @@ void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t coun
   const std::size_t step = header_.layout.point_step;
   const bool is_packed = runs_.size() == 1 && runs_[0].from == 0 && input_step_ == step;
   header_.points += count;
+  if (is_packed && count * step >= buffer_.size()) {
+    flush();
+    write(point_records, count * step);
+    return;
+  }
   while (count > 0) {
     if (buffered_ + step > buffer_.size()) flush();
     const std::size_t fitting = std::min(count, (buffer_.size() - buffered_) / step);
@@ -145,9 +150,10 @@ void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t coun
   }
 }
 
-void PcdStreamWriter::flush() {
-  if (std::fwrite(buffer_.data(), 1, buffered_, file_) != buffered_) failWriting(path_);
-  buffered_ = 0;
+void PcdStreamWriter::flush() { write(buffer_.data(), std::exchange(buffered_, 0)); }
+
+void PcdStreamWriter::write(const std::uint8_t* bytes, std::size_t size) {
+  if (std::fwrite(bytes, 1, size, file_) != size) failWriting(path_);
 }
 
 void PcdStreamWriter::close() {

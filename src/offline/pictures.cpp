@@ -74,7 +74,15 @@ TopView::TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent)
       width_(std::max(1, static_cast<int>(std::ceil(extent.x() / metres_per_pixel_)))),
       height_(std::max(1, static_cast<int>(std::ceil(extent.y() / metres_per_pixel_)))),
       blocks_per_row_((width_ + 7) / 8),
-      pixels_(indexOf(0, height_ + 3)) {}
+      pixels_(indexOf(0, height_ + 3) + 1) {}
+
+void TopView::add(const TopView& other) {
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& added = other.pixels_[i];
+    pixels_[i].kept = static_cast<std::uint8_t>(std::min(255, pixels_[i].kept + added.kept));
+    pixels_[i].marks |= added.marks;
+  }
+}
 
 template <typename F>
 Picture TopView::draw(F color) const {

@@ -88,6 +88,30 @@ TEST(TopView, RemovedPointsLieOnTopOfKeptOnes) {
   EXPECT_TRUE(isReddish(pixelAt(before, 0.05, 101.05)));
 }
 
+TEST(TopView, ViewsOfSomePointsEachAddUpToTheViewOfAll) {
+  TopView all = smallView(), parts[2] = {smallView(), smallView()};
+  test::Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d point(random.uniform(-5, -2), random.uniform(100, 101), 0.0);
+    const bool removed = random.chance(0.001), moving = random.chance(0.001);
+    all.add(point, removed, moving);
+    parts[random.chance(0.5)].add(point, removed, moving);
+  }
+  for (int i = 0; i < 1000; ++i) {
+    all.add({0.05, 105.0, 0.0}, false, false);  // more than a pixel counts
+    parts[i % 2].add({0.05, 105.0, 0.0}, false, false);
+  }
+  parts[0].add(parts[1]);
+  const test::OutputFolder folder;
+  const auto bytes = [&](const Picture& picture) {
+    picture.writePng(folder.file("p.png"));
+    return test::bytesOf(folder.file("p.png"));
+  };
+  EXPECT_EQ(bytes(all.before()), bytes(parts[0].before()));
+  EXPECT_EQ(bytes(all.after()), bytes(parts[0].after()));
+  EXPECT_EQ(bytes(all.mistakes()), bytes(parts[0].mistakes()));
+}
+
 TEST(TopView, MorePointsAreDarker) {
   TopView view = smallView();
   view.add({0.05, 101.05, 0.0}, false, false);

@@ -58,10 +58,11 @@ constexpr double kMaxFloat32Coordinate = 8192.0;
 /// bit-exact. x, y, z become float64 when `as_float64`, float32 otherwise. A cloud whose x, y, z
 /// have that type keeps its layout, and the identity then changes nothing; otherwise the fields
 /// follow each other in their order without padding. Points that are not finite stay not finite.
-pcl::PCLPointCloud2 moveCloud(const pcl::PCLPointCloud2& cloud,
-                              const Eigen::Isometry3d& T_map_cloud, bool as_float64);
-/// The same into a cloud whose memory is used again.
-void moveCloud(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud,
-               bool as_float64, pcl::PCLPointCloud2& moved);
+pcl::PCLPointCloud2 moveCloud(pcl::PCLPointCloud2 cloud, const Eigen::Isometry3d& T_map_cloud,
+                              bool as_float64);
+/// The same without a copy where the layout stays: the two clouds then change their memory.
+/// @param cloud  holds nothing meaningful afterwards
+void moveCloud(pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_cloud, bool as_float64,
+               pcl::PCLPointCloud2& moved);
 
 }  // namespace beautymap

@@ -46,6 +46,7 @@ class PcdStreamWriter {
 
  private:
   void flush();
+  void write(const std::uint8_t* bytes, std::size_t size);
 
   std::string path_;
   std::string temporary_path_;

@@ -43,13 +43,23 @@ class TopView {
 
   /// @param moving  the point's label, false where there are none
   void add(const Eigen::Vector3d& point, bool removed, bool moving) {
+    add(pixelOf(point), removed, moving);
+  }
+  /// The same in two steps. Pixels are far from each other in memory: one loop that finds those of
+  /// some points and another that adds to them wait for several at once.
+  std::size_t pixelOf(const Eigen::Vector3d& point) const {
     const double x = (point.x() - corner_.x()) * pixels_per_metre_;
     const double y = (point.y() - corner_.y()) * pixels_per_metre_;
-    if (!(x >= 0.0 && y >= 0.0 && x < width_ && y < height_)) return;
-    Pixel& pixel = pixels_[indexOf(static_cast<int>(x), static_cast<int>(y))];
-    pixel.kept = static_cast<std::uint8_t>(std::min(255, pixel.kept + (removed ? 0 : 1)));
+    const bool inside = x >= 0.0 && y >= 0.0 && x < width_ && y < height_;
+    return inside ? indexOf(static_cast<int>(x), static_cast<int>(y)) : pixels_.size() - 1;
+  }
+  void add(std::size_t pixel_index, bool removed, bool moving) {
+    Pixel& pixel = pixels_[pixel_index];
+    if (!removed) pixel.kept = static_cast<std::uint8_t>(pixel.kept + (pixel.kept < 255));
     if (removed || moving) mark(pixel, removed, moving);
   }
+  /// Adds the points of another view of the same area.
+  void add(const TopView& other);
 
   /// Static points blue, removed ones red on top of them.
   Picture before() const;
@@ -88,7 +98,7 @@ class TopView {
   double pixels_per_metre_;
   int width_, height_;
   int blocks_per_row_;
-  std::vector<Pixel> pixels_;
+  std::vector<Pixel> pixels_;  ///< and one more for what lies outside
 };
 
 /// The binary matrix as a heat map: the height of each column's highest occupied bit, purple to
