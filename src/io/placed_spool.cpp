@@ -16,37 +16,38 @@ struct Record {
 
 }  // namespace
 
-void PlacedSpool::append(const PlacedScan& scan) {
+std::int64_t PlacedSpool::write(const PlacedScan& scan) {
   const Eigen::Vector3f& sensor = scan.sensor;
   const Record record{scan.cloud_size,
                       scan.size(),
                       scan.runs.size(),
                       scan.anchor,
                       {sensor.x(), sensor.y(), sensor.z()}};
-  file_.append(&record, sizeof(record));
-  file_.append(scan.runs);
-  file_.append(scan.z);
-  if (!scan.isWhole()) file_.append(scan.source_index);
-  file_.append(scan.x);
-  file_.append(scan.y);
-  ++size_;
-}
-
-void PlacedSpool::rewind() {
-  read_offset_ = 0;
-  read_ = 0;
+  const std::size_t indices = scan.isWhole() ? 0 : scan.size() * sizeof(scan.source_index[0]);
+  const std::int64_t place =
+      file_.reserve(sizeof(record) + scan.runs.size() * sizeof(scan.runs[0]) +
+                    3 * scan.size() * sizeof(scan.x[0]) + indices);
+  std::int64_t offset = place;
+  file_.write(offset, &record, sizeof(record));
+  file_.write(offset, scan.runs);
+  file_.write(offset, scan.z);
+  if (!scan.isWhole()) file_.write(offset, scan.source_index);
+  file_.write(offset, scan.x);
+  file_.write(offset, scan.y);
+  return place;
 }
 
 bool PlacedSpool::next(PlacedScan& scan, Part part) {
-  if (read_ == size_) return false;
+  if (read_ == places_.size()) return false;
+  std::int64_t offset = places_[read_++];
   Record record;
-  file_.read(read_offset_, &record, sizeof(record));
+  file_.read(offset, &record, sizeof(record));
   scan.cloud_size = record.cloud_size;
   scan.anchor = record.anchor;
   scan.sensor = {record.sensor[0], record.sensor[1], record.sensor[2]};
   const auto readArray = [&](auto& values, std::size_t size) {
     values.resize(size);
-    file_.read(read_offset_, values);
+    file_.read(offset, values);
   };
   readArray(scan.runs, record.runs);
   readArray(scan.z, record.points);
@@ -54,10 +55,7 @@ bool PlacedSpool::next(PlacedScan& scan, Part part) {
   if (part == Part::kAll) {
     readArray(scan.x, record.points);
     readArray(scan.y, record.points);
-  } else {
-    read_offset_ += static_cast<std::int64_t>(2 * record.points * sizeof(scan.x[0]));
   }
-  ++read_;
   return true;
 }
 

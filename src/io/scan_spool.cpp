@@ -32,32 +32,36 @@ bool sameFields(const pcl::PCLPointCloud2& a, const pcl::PCLPointCloud2& b) {
 }  // namespace
 
 bool ScanSpool::accepts(const SourceScan& scan) const {
-  return size_ == 0 || sameFields(scan.cloud, layout_);
+  return places_.empty() || sameFields(scan.cloud, layout_);
 }
 
-void ScanSpool::append(const SourceScan& scan) {
-  if (size_ == 0) {
+std::int64_t ScanSpool::write(const SourceScan& scan) {
+  Record record{scan.stamp_ns, scan.cloud.width, {}, {}};
+  std::memcpy(record.T_map_cloud, scan.T_map_cloud.data(), sizeof(record.T_map_cloud));
+  std::memcpy(record.T_map_sensor, scan.T_map_sensor.data(), sizeof(record.T_map_sensor));
+  const std::int64_t place = file_.reserve(sizeof(record) + scan.cloud.data.size());
+  std::int64_t offset = place;
+  file_.write(offset, &record, sizeof(record));
+  file_.write(offset, scan.cloud.data);
+  return place;
+}
+
+void ScanSpool::add(const SourceScan& scan, std::int64_t place) {
+  if (places_.empty()) {
     layout_ = scan.cloud;
     layout_.data.clear();
     layout_.width = 0;
   }
-  Record record{scan.stamp_ns, scan.cloud.width, {}, {}};
-  std::memcpy(record.T_map_cloud, scan.T_map_cloud.data(), sizeof(record.T_map_cloud));
-  std::memcpy(record.T_map_sensor, scan.T_map_sensor.data(), sizeof(record.T_map_sensor));
-  file_.append(&record, sizeof(record));
-  file_.append(scan.cloud.data);
-  ++size_;
+  places_.push_back(place);
 }
 
-void ScanSpool::rewind() {
-  read_offset_ = 0;
-  read_ = 0;
-}
+void ScanSpool::rewind() { read_ = 0; }
 
 bool ScanSpool::next(SourceScan& scan) {
-  if (read_ == size_) return false;
+  if (read_ == places_.size()) return false;
+  std::int64_t offset = places_[read_++];
   Record record;
-  file_.read(read_offset_, &record, sizeof(record));
+  file_.read(offset, &record, sizeof(record));
   std::vector<std::uint8_t> buffer = std::move(scan.cloud.data);
   scan.cloud = layout_;
   scan.cloud.data = std::move(buffer);
@@ -67,8 +71,7 @@ bool ScanSpool::next(SourceScan& scan) {
   scan.stamp_ns = record.stamp_ns;
   std::memcpy(scan.T_map_cloud.data(), record.T_map_cloud, sizeof(record.T_map_cloud));
   std::memcpy(scan.T_map_sensor.data(), record.T_map_sensor, sizeof(record.T_map_sensor));
-  file_.read(read_offset_, scan.cloud.data);
-  ++read_;
+  file_.read(offset, scan.cloud.data);
   return true;
 }
 

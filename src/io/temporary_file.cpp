@@ -48,16 +48,16 @@ TemporaryFile::TemporaryFile(const std::string& folder)
 
 TemporaryFile::~TemporaryFile() { ::close(descriptor_); }
 
-void TemporaryFile::append(const void* bytes, std::size_t size) {
+void TemporaryFile::write(std::int64_t& offset, const void* bytes, std::size_t size) const {
   const auto* from = static_cast<const char*>(bytes);
   const bool written = transfer(size, [&](std::size_t done, std::size_t rest) {
-    return ::pwrite(descriptor_, from + done, rest, size_ + static_cast<std::int64_t>(done));
+    return ::pwrite(descriptor_, from + done, rest, offset + static_cast<std::int64_t>(done));
   });
   if (!written) {
     throw InputError("cannot keep the scans in a temporary file in '" + folder_ +
                      "': " + std::strerror(errno));
   }
-  size_ += static_cast<std::int64_t>(size);
+  offset += static_cast<std::int64_t>(size);
 }
 
 void TemporaryFile::read(std::int64_t& offset, void* bytes, std::size_t size) const {

@@ -28,7 +28,8 @@ struct ReadScan {
   SourceScan source;
   Scan scan;
   ScanView view;
-  std::string unusable;  ///< why, or empty
+  std::string unusable;                      ///< why, or empty
+  std::int64_t place = 0, placed_place = 0;  ///< in the temporary files
   ScanOutput output;
 };
 
@@ -134,7 +135,12 @@ void OfflineRun::observe() {
           cleaner_.place(read.scan, read.view);
         } catch (const std::invalid_argument& e) {
           read.unusable = e.what();
+          return;
         }
+        StageClock clock(read.view.times);
+        read.place = spool_.write(read.source);
+        read.placed_place = placed_.write(read.view.placed);
+        clock.lap("spool");
       },
       [&](const ReadScan& read) {
         progress_.step();
@@ -147,10 +153,8 @@ void OfflineRun::observe() {
           return;
         }
         cleaner_.observe(read.view);
-        StageClock clock(report_.stages);
-        spool_.append(read.source);
-        placed_.append(read.view.placed);
-        clock.lap("spool");
+        spool_.add(read.source, read.place);
+        placed_.add(read.placed_place);
         ++report_.scans;
         report_.points += read.scan.cloud.size();
         labelled_ = labelled_ && FieldReader::has(read.source.cloud, "label");

@@ -158,7 +158,12 @@ TEST(PcdStreamWriter, AcceptsOnlyTheLayoutItWasMadeFor) {
 TEST(PcdStreamWriter, ManyPointsAtOnceAreTheSameAsOneByOne) {
   const TempFolder folder;
   const Cloud packed = makeCloud({{1.5F, 2, 3}, {4, 5, 6}, {7, 8, 9.25F}}, 3);
-  for (const Cloud& cloud : {oddCloud(200'000), packed}) {
+  // Of more bytes than are gathered before they are written.
+  Cloud large = packed;
+  large.width = 100'000;
+  large.data.resize(large.width * large.point_step);
+  std::iota(large.data.begin(), large.data.end(), std::uint8_t{0});
+  for (const Cloud& cloud : {oddCloud(200'000), packed, large}) {
     writeAll(folder / "one_by_one.pcd", cloud);
     PcdStreamWriter writer(folder / "at_once.pcd", cloud);
     writer.append(cloud.data.data(), 1);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "beautymap/io/scan_source.h"
@@ -47,7 +48,7 @@ TEST(PlacedSpool, ScansComeBackAsTheyWereAsOftenAsWanted) {
   const std::vector<PlacedScan> scans = placedScans();
   const test::OutputFolder folder;
   PlacedSpool spool(folder.path());
-  for (const PlacedScan& scan : scans) spool.append(scan);
+  for (const PlacedScan& scan : scans) spool.add(spool.write(scan));
   EXPECT_EQ(spool.size(), scans.size());
   PlacedScan read;  // its memory is used again
   for (int pass = 0; pass < 3; ++pass) {
@@ -63,11 +64,33 @@ TEST(PlacedSpool, ScansComeBackAsTheyWereAsOftenAsWanted) {
   }
 }
 
+TEST(PlacedSpool, ScansComeBackInTheOrderInWhichTheyAreAdded) {
+  const std::vector<PlacedScan> scans = placedScans();
+  const test::OutputFolder folder;
+  PlacedSpool spool(folder.path());
+  std::vector<std::int64_t> places(scans.size());
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    threads.emplace_back([&, i] { places[i] = spool.write(scans[i]); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  // One that is not added is not in the spool.
+  for (std::size_t i = 1; i < scans.size(); ++i) spool.add(places[i]);
+  EXPECT_EQ(spool.size(), scans.size() - 1);
+  PlacedScan read;
+  for (std::size_t i = 1; i < scans.size(); ++i) {
+    ASSERT_TRUE(spool.next(read));
+    expectEqualHeights(read, scans[i]);
+    EXPECT_EQ(read.x, scans[i].x);
+  }
+  EXPECT_FALSE(spool.next(read));
+}
+
 TEST(PlacedSpool, WithoutXAndYTheRestComesBack) {
   const std::vector<PlacedScan> scans = placedScans();
   const test::OutputFolder folder;
   PlacedSpool spool(folder.path());
-  for (const PlacedScan& scan : scans) spool.append(scan);
+  for (const PlacedScan& scan : scans) spool.add(spool.write(scan));
   PlacedScan read;
   spool.rewind();
   for (const PlacedScan& scan : scans) {
@@ -80,7 +103,7 @@ TEST(PlacedSpool, WithoutXAndYTheRestComesBack) {
 TEST(PlacedSpool, LeavesNoFile) {
   const test::OutputFolder folder;
   PlacedSpool spool(folder.path());
-  for (const PlacedScan& scan : placedScans()) spool.append(scan);
+  for (const PlacedScan& scan : placedScans()) spool.add(spool.write(scan));
   EXPECT_TRUE(folder.names().empty()) << "the file has no name, also while it is used";
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
 #include <vector>
 
 #include "offline/offline_test_helpers.h"
@@ -46,6 +47,27 @@ TEST(ScanSpool, ScansComeBackAsTheyWereAsOftenAsWanted) {
     EXPECT_FALSE(spool.next(read));
     EXPECT_FALSE(spool.next(read));
   }
+}
+
+TEST(ScanSpool, ScansComeBackInTheOrderInWhichTheyAreAdded) {
+  const std::vector<SourceScan> scans = test::sourceDrive(4);
+  const test::OutputFolder folder;
+  ScanSpool spool(folder.path());
+  std::vector<std::int64_t> places(scans.size());
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    threads.emplace_back([&, i] { places[i] = spool.write(scans[i]); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  // One that is not added is not in the spool.
+  for (std::size_t i = 1; i < scans.size(); ++i) spool.add(scans[i], places[i]);
+  EXPECT_EQ(spool.size(), scans.size() - 1);
+  SourceScan read;
+  for (std::size_t i = 1; i < scans.size(); ++i) {
+    ASSERT_TRUE(spool.next(read));
+    expectEqual(read, scans[i]);
+  }
+  EXPECT_FALSE(spool.next(read));
 }
 
 TEST(ScanSpool, ReadingMayStopInTheMiddle) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "beautymap/io/temporary_file.h"
 #include "beautymap/scan.h"
@@ -23,19 +24,22 @@ class PlacedSpool {
   /// @throws InputError when no file can be made there.
   explicit PlacedSpool(const std::string& folder) : file_(folder) {}
 
+  /// Writes a scan into the file; several threads may do so at once. It belongs to the spool only
+  /// when it is added.
+  /// @return its place, for add()
   /// @throws InputError when the disk is full.
-  void append(const PlacedScan& scan);
-  void rewind();
+  std::int64_t write(const PlacedScan& scan);
+  void add(std::int64_t place) { places_.push_back(place); }
+  void rewind() { read_ = 0; }
   /// The next scan; false at the end. Its memory is used again, also that of parts left out, which
   /// then hold nothing meaningful.
   bool next(PlacedScan& scan, Part part = Part::kAll);
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return places_.size(); }
 
  private:
   TemporaryFile file_;
-  std::size_t size_ = 0;
+  std::vector<std::int64_t> places_;  ///< of the scans in the file [byte]
   std::size_t read_ = 0;
-  std::int64_t read_offset_ = 0;  ///< [byte]
 };
 
 }  // namespace beautymap

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "beautymap/io/scan_source.h"
 #include "beautymap/io/temporary_file.h"
@@ -19,21 +20,26 @@ class ScanSpool {
   /// @throws InputError when no file can be made there.
   explicit ScanSpool(const std::string& folder) : file_(folder) {}
 
-  /// Whether the scan has the fields of those before; append() takes only such ones.
+  /// Whether the scan has the fields of those before; add() takes only such ones.
   bool accepts(const SourceScan& scan) const;
+  /// Writes a scan into the file; several threads may do so at once. It belongs to the spool only
+  /// when it is added.
+  /// @return its place, for add()
   /// @throws InputError when the disk is full.
-  void append(const SourceScan& scan);
+  std::int64_t write(const SourceScan& scan);
+  /// @param place  of the scan in the file
+  void add(const SourceScan& scan, std::int64_t place);
+  void append(const SourceScan& scan) { add(scan, write(scan)); }
   void rewind();
   /// The next scan; false at the end. Buffers of the scan given are used again.
   bool next(SourceScan& scan);
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return places_.size(); }
 
  private:
   TemporaryFile file_;
-  pcl::PCLPointCloud2 layout_;  ///< fields of the first scan, no points
-  std::size_t size_ = 0;
+  pcl::PCLPointCloud2 layout_;        ///< fields of the first scan, no points
+  std::vector<std::int64_t> places_;  ///< of the scans in the file [byte]
   std::size_t read_ = 0;
-  std::int64_t read_offset_ = 0;  ///< [byte]
 };
 
 }  // namespace beautymap

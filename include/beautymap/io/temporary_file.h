@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -20,15 +21,22 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
+  // Several threads may reserve room, write what they reserved, and read what was written.
+  /// Room behind all that was reserved before.
+  /// @return its offset
+  std::int64_t reserve(std::size_t size) {
+    return size_.fetch_add(static_cast<std::int64_t>(size));
+  }
+  /// Writes at an offset, and moves the offset behind it.
   /// @throws InputError when the disk is full.
-  void append(const void* bytes, std::size_t size);
+  void write(std::int64_t& offset, const void* bytes, std::size_t size) const;
   /// Fills `bytes` with what was written at an offset, and moves the offset behind it.
   /// @throws InputError when that cannot be read.
   void read(std::int64_t& offset, void* bytes, std::size_t size) const;
 
   template <typename T>
-  void append(const std::vector<T>& values) {
-    append(values.data(), values.size() * sizeof(T));
+  void write(std::int64_t& offset, const std::vector<T>& values) const {
+    write(offset, values.data(), values.size() * sizeof(T));
   }
   template <typename T>
   void read(std::int64_t& offset, std::vector<T>& values) const {
@@ -38,7 +46,7 @@ class TemporaryFile {
  private:
   std::string folder_;
   int descriptor_;
-  std::int64_t size_ = 0;  ///< [byte]
+  std::atomic<std::int64_t> size_{0};  ///< [byte]
 };
 
 }  // namespace beautymap
