@@ -239,28 +239,39 @@ bool FieldReader::has(const pcl::PCLPointCloud2& cloud, const std::string& name)
 }
 
 double FieldReader::operator()(std::size_t point) const {
-  const std::uint8_t* bytes = first_ + point * point_step_;
+  double value = 0.0;
+  read(point, 1, &value);
+  return value;
+}
+
+void FieldReader::read(std::size_t first, std::size_t count, double* values) const {
+  const auto readAs = [&](auto type) {
+    const std::uint8_t* bytes = first_ + first * point_step_;
+    for (std::size_t i = 0; i < count; ++i, bytes += point_step_) {
+      values[i] = static_cast<double>(load<decltype(type)>(bytes));
+    }
+  };
   switch (datatype_) {
     case kInt8:
-      return load<std::int8_t>(bytes);
+      return readAs(std::int8_t{});
     case kInt16:
-      return load<std::int16_t>(bytes);
+      return readAs(std::int16_t{});
     case kUint16:
-      return load<std::uint16_t>(bytes);
+      return readAs(std::uint16_t{});
     case kInt32:
-      return load<std::int32_t>(bytes);
+      return readAs(std::int32_t{});
     case kUint32:
-      return load<std::uint32_t>(bytes);
+      return readAs(std::uint32_t{});
     case kFloat32:
-      return static_cast<double>(load<float>(bytes));
+      return readAs(float{});
     case kFloat64:
-      return load<double>(bytes);
+      return readAs(double{});
     case kInt64:
-      return static_cast<double>(load<std::int64_t>(bytes));
+      return readAs(std::int64_t{});
     case kUint64:
-      return static_cast<double>(load<std::uint64_t>(bytes));
+      return readAs(std::uint64_t{});
     default:  // kUint8 and kBool: the constructor lets no unknown type pass
-      return *bytes;
+      return readAs(std::uint8_t{});
   }
 }
 

@@ -3,6 +3,7 @@
 #include "beautymap/io/moving_labels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "beautymap/io/cloud_fields.h"
@@ -20,14 +21,18 @@ std::vector<bool> movingPoints(const pcl::PCLPointCloud2& cloud, const ScanSourc
   if (!FieldReader::has(cloud, "label")) return {};
   const FieldReader label(cloud, "label");
   std::vector<bool> moving(pointCount(cloud), false);
+  std::array<double, 1024> block;
   // Neighbouring points mostly have the same label, and most do not move.
-  std::uint32_t last = 0;
-  bool last_moves = source.isMoving(last);
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    const std::uint32_t value = toLabel(label(i));
-    if (value != last) last_moves = source.isMoving(value);
-    last = value;
-    if (last_moves) moving[i] = true;
+  double last = 0.0;
+  bool last_moves = source.isMoving(0);
+  for (std::size_t first = 0; first < moving.size(); first += block.size()) {
+    const std::size_t count = std::min(block.size(), moving.size() - first);
+    label.read(first, count, block.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (block[i] != last) last_moves = source.isMoving(toLabel(block[i]));
+      last = block[i];
+      if (last_moves) moving[first + i] = true;
+    }
   }
   return moving;
 }

@@ -93,10 +93,10 @@ struct MapWriter::Block {
 
   std::size_t first = 0, last = 0;
   std::array<Eigen::Vector3d, kMost> positions;  ///< [m] in the map
-  std::array<std::size_t, kMost> pixels;         ///< of the top view
+  std::array<std::uint32_t, kMost> pixels;       ///< of the top view
 
   const Eigen::Vector3d& position(std::size_t point) const { return positions[point - first]; }
-  std::size_t pixel(std::size_t point) const { return pixels[point - first]; }
+  std::uint32_t pixel(std::size_t point) const { return pixels[point - first]; }
 };
 
 void MapWriter::split(ScanOutput& output) {
@@ -114,8 +114,8 @@ void MapWriter::split(ScanOutput& output) {
     block.last = std::min(classes.size(), block.first + Block::kMost);
     for (std::size_t i = block.first; i < block.last; ++i) {
       block.positions[i - block.first] = position_of(i);
-      block.pixels[i - block.first] = top_view.pixelOf(block.position(i));
     }
+    top_view.findPixels(block.positions.data(), block.last - block.first, block.pixels.data());
     // Neighbouring points mostly have the same class.
     for (std::size_t first = block.first, last = first; first < block.last; first = last) {
       while (last < block.last && classes[last] == classes[first]) ++last;
@@ -155,13 +155,15 @@ void MapWriter::put(const Block& block, std::size_t first, std::size_t last, boo
     records.insert(records.end(), scan + first * step, scan + last * step);
   }
   if (!labelled_) return;
+  if (written && !removed) {
+    std::uint64_t moving = 0;
+    for (std::size_t i = first; i < last; ++i) moving += output.moving[i] ? 1 : 0;
+    output.kept_moving += moving;
+    output.kept_static += last - first - moving;
+    return;
+  }
   for (std::size_t i = first; i < last; ++i) {
-    const bool moving = output.moving[i];
-    if (written && !removed) {
-      ++(moving ? output.kept_moving : output.kept_static);
-    } else {
-      output.unmatched.push_back({block.position(i), moving});
-    }
+    output.unmatched.push_back({block.position(i), output.moving[i]});
   }
 }
 

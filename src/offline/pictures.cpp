@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../vector_clones.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
@@ -75,6 +76,12 @@ TopView::TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent)
       height_(std::max(1, static_cast<int>(std::ceil(extent.y() / metres_per_pixel_)))),
       blocks_per_row_((width_ + 7) / 8),
       pixels_(indexOf(0, height_ + 3) + 1) {}
+
+BEAUTYMAP_VECTOR_CLONES
+void TopView::findPixels(const Eigen::Vector3d* points, std::size_t count,
+                         std::uint32_t* pixels) const {
+  for (std::size_t i = 0; i < count; ++i) pixels[i] = pixelOf(points[i]);
+}
 
 void TopView::add(const TopView& other) {
   for (std::size_t i = 0; i < pixels_.size(); ++i) {

@@ -35,6 +35,8 @@ class FieldReader {
   FieldReader(const pcl::PCLPointCloud2& cloud, const std::string& name);
   static bool has(const pcl::PCLPointCloud2& cloud, const std::string& name);
   double operator()(std::size_t point) const;
+  /// The same of `count` points.
+  void read(std::size_t first, std::size_t count, double* values) const;
   /// The field's datatype (pcl::PCLPointField).
   std::uint8_t datatype() const { return datatype_; }
   /// Bytes from the start of a point's record to the field.

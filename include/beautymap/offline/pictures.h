@@ -47,13 +47,8 @@ class TopView {
   }
   /// The same in two steps. Pixels are far from each other in memory: one loop that finds those of
   /// some points and another that adds to them wait for several at once.
-  std::size_t pixelOf(const Eigen::Vector3d& point) const {
-    const double x = (point.x() - corner_.x()) * pixels_per_metre_;
-    const double y = (point.y() - corner_.y()) * pixels_per_metre_;
-    const bool inside = x >= 0.0 && y >= 0.0 && x < width_ && y < height_;
-    return inside ? indexOf(static_cast<int>(x), static_cast<int>(y)) : pixels_.size() - 1;
-  }
-  void add(std::size_t pixel_index, bool removed, bool moving) {
+  void findPixels(const Eigen::Vector3d* points, std::size_t count, std::uint32_t* pixels) const;
+  void add(std::uint32_t pixel_index, bool removed, bool moving) {
     Pixel& pixel = pixels_[pixel_index];
     if (!removed) pixel.kept = static_cast<std::uint8_t>(pixel.kept + (pixel.kept < 255));
     if (removed || moving) mark(pixel, removed, moving);
@@ -85,10 +80,19 @@ class TopView {
     }
   }
 
+  std::uint32_t pixelOf(const Eigen::Vector3d& point) const {
+    const double x = (point.x() - corner_.x()) * pixels_per_metre_;
+    const double y = (point.y() - corner_.y()) * pixels_per_metre_;
+    const bool inside = x >= 0.0 && y >= 0.0 && x < width_ && y < height_;
+    // Bounded instead of asked first, so that no branch is needed; 0 for what is not a number.
+    const int column = static_cast<int>(std::min(width_ - 1.0, std::max(0.0, x)));
+    const int row = static_cast<int>(std::min(height_ - 1.0, std::max(0.0, y)));
+    return inside ? indexOf(column, row) : static_cast<std::uint32_t>(pixels_.size() - 1);
+  }
   /// Blocks of 8 x 4 pixels follow each other: neighbouring points then share a cache line.
-  std::size_t indexOf(int x, int y) const {
+  std::uint32_t indexOf(int x, int y) const {
     const int block = (y >> 2) * blocks_per_row_ + (x >> 3);
-    return static_cast<std::size_t>(block) * 32 + static_cast<std::size_t>((y & 3) * 8 + (x & 7));
+    return static_cast<std::uint32_t>(block * 32 + (y & 3) * 8 + (x & 7));
   }
   template <typename F>
   Picture draw(F color) const;
