@@ -125,6 +125,7 @@ void matrix_comparison(State& state) {
 
 void sight_mask(State& state) {
   run(state, "paper_kitti", [](Prepared& p) {
+    p.placed.steepest_slope = steepestSlope(p.placed, p.config.restoration.steepest_share);
     DoNotOptimize(
         cellsInSight(p.placed, p.scan_bits, p.window, p.config.matrix, p.config.restoration));
   });

@@ -30,6 +30,9 @@ void MapCleaner::place(const Scan& scan, ScanView& view) const {
   view.placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, view.dropped,
                           std::move(view.placed));
   clock.lap("placing");
+  if (!needsEncoding() || !config_.restoration.enabled) return;
+  view.placed.steepest_slope = steepestSlope(view.placed, config_.restoration.steepest_share);
+  clock.lap("sight_mask");
 }
 
 void MapCleaner::observe(const Scan& scan) {

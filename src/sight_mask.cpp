@@ -43,7 +43,7 @@ float steepestSlope(const PlacedScan& scan, double share) {
 
 BitGrid cellsInSight(const PlacedScan& scan, const BitGrid& scan_bits, const MapWindow& map,
                      const MatrixConfig& matrix, const RestorationConfig& config) {
-  const float slope = steepestSlope(scan, config.steepest_share);
+  const float slope = scan.steepest_slope;
   const Bits ground_bit = Bits{1} << matrix.bits_below;
   const Bits above = ~lowBits(matrix.bits_below + 1);
   BitGrid in_sight(scan_bits.window(), 0);

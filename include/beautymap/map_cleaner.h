@@ -61,8 +61,8 @@ class MapCleaner {
   std::vector<PointClass> classify(const Scan& scan);
 
   // The same in parts, so that a scan is placed once, before it is observed: the later phases take
-  // it from where it was kept (classify() needs no x and y). startAt() must know the first scan's
-  // sensor before.
+  // it from where it was kept (classify() needs no x and y, the published method only in place()).
+  // startAt() must know the first scan's sensor before.
   void startAt(const Eigen::Vector3d& sensor_in_map);
   void place(const Scan& scan, ScanView& view) const;
   void observe(const ScanView& view);

@@ -58,6 +58,7 @@ struct PlacedScan {
   std::vector<std::uint32_t> source_index;  ///< of each point in the cloud; not when it is whole
   std::vector<ColumnRun> runs;              ///< all points, in order
   std::size_t cloud_size = 0;               ///< points of the scan's cloud, usable or not
+  float steepest_slope = 0.0F;              ///< of its beams, where the method asks for it
 
   std::size_t size() const { return z.size(); }
   /// Whether no point of the cloud was dropped.

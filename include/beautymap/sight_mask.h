@@ -19,10 +19,10 @@ struct MapWindow {
   ColumnGrid<std::uint8_t> below_ground;
 };
 
-/// Static restoration a: the cells that were in the scan's view at all. Nothing above ceil(k s)
-/// was, nor what lies at or above the highest hit above ground (unless the column holds
-/// below-ground outliers, whose bits are displaced), nor a column beyond the sight range whose
-/// ground the scan did not hit.
+/// Static restoration a: the cells that were in the scan's view at all, whose steepest_slope must
+/// be set. Nothing above ceil(k s) was, nor what lies at or above the highest hit above ground
+/// (unless the column holds below-ground outliers, whose bits are displaced), nor a column beyond
+/// the sight range whose ground the scan did not hit.
 BitGrid cellsInSight(const PlacedScan& scan, const BitGrid& scan_bits, const MapWindow& map,
                      const MatrixConfig& matrix, const RestorationConfig& config);
 

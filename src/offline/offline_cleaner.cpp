@@ -62,7 +62,7 @@ class OfflineRun {
         read_ahead_(readAhead(source, config)),
         cleaner_(config),
         spool_(options.output),
-        placed_(options.output) {}
+        placed_(options.output, cleaner_.needsEncoding() ? Part::kHeights : Part::kAll) {}
 
   OfflineReport run() {
     const auto start = std::chrono::steady_clock::now();

@@ -84,6 +84,12 @@ struct Case {
   MapWindow map;
 };
 
+BitGrid cellsInSightOf(const Case& c) {
+  PlacedScan scan = c.scan;
+  scan.steepest_slope = steepestSlope(scan, c.config.steepest_share);
+  return cellsInSight(scan, c.scan_bits, c.map, c.matrix, c.config);
+}
+
 /// Whether the scan could have seen bit k of a column; nothing where float may round to the other
 /// side: radii and heights of up to 100 m, rounded a few times, differ by less than 1e-3 of a bit
 /// and of a metre.
@@ -113,7 +119,7 @@ TEST(SightMask, AgreesWithALoopOverTheBits) {
   std::uint64_t compared = 0, undecided = 0;
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     const Case c(seed);
-    const BitGrid in_sight = cellsInSight(c.scan, c.scan_bits, c.map, c.matrix, c.config);
+    const BitGrid in_sight = cellsInSightOf(c);
     const double slope = static_cast<double>(steepestSlope(c.scan, c.config.steepest_share));
     for (int x = 0; x < in_sight.size(); ++x) {
       for (int y = 0; y < in_sight.size(); ++y) {
@@ -223,9 +229,7 @@ Case openSquare() {
   return c;
 }
 
-Bits sightAt(const Case& c, int x, int y) {
-  return cellsInSight(c.scan, c.scan_bits, c.map, c.matrix, c.config).at(x + 20, y + 20);
-}
+Bits sightAt(const Case& c, int x, int y) { return cellsInSightOf(c).at(x + 20, y + 20); }
 
 TEST(SightMask, TheBlindRadiusIsNeverJudged) {
   Case c = openSquare();
@@ -267,7 +271,7 @@ TEST(SightMask, AnEmptyScanSeesNothing) {
   Case c = openSquare();
   c.config.blind_radius = 0.0;  // also where the distance is zero
   c.scan = test::placedScan(c.scan.anchor, c.scan.sensor.cast<double>(), {});
-  const BitGrid in_sight = cellsInSight(c.scan, c.scan_bits, c.map, c.matrix, c.config);
+  const BitGrid in_sight = cellsInSightOf(c);
   for (int x = 0; x < in_sight.size(); ++x) {
     for (int y = 0; y < in_sight.size(); ++y) EXPECT_EQ(in_sight.at(x, y), 0U);
   }

@@ -25,6 +25,7 @@ std::vector<PlacedScan> placedScans() {
   DroppedPoints dropped;
   for (const Scan& scan : scans) {
     placed.push_back(placeScan(scan, 0.5, 0.5, ScanConfig(), dropped));
+    placed.back().steepest_slope = 0.1F * static_cast<float>(placed.size());
   }
   return placed;
 }
@@ -34,6 +35,7 @@ void expectEqualHeights(const PlacedScan& a, const PlacedScan& b) {
   EXPECT_EQ(a.sensor, b.sensor);
   EXPECT_EQ(a.cloud_size, b.cloud_size);
   EXPECT_EQ(a.z, b.z);
+  EXPECT_EQ(a.steepest_slope, b.steepest_slope);
   ASSERT_EQ(a.isWhole(), b.isWhole());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a.sourceOf(i), b.sourceOf(i));
   ASSERT_EQ(a.runs.size(), b.runs.size());
@@ -98,6 +100,19 @@ TEST(PlacedSpool, WithoutXAndYTheRestComesBack) {
     expectEqualHeights(read, scan);
   }
   EXPECT_FALSE(spool.next(read, PlacedSpool::Part::kHeights));
+}
+
+TEST(PlacedSpool, XAndYNeedNotBeKept) {
+  const std::vector<PlacedScan> scans = placedScans();
+  const test::OutputFolder folder;
+  PlacedSpool spool(folder.path(), PlacedSpool::Part::kHeights);
+  for (const PlacedScan& scan : scans) spool.add(spool.write(scan));
+  PlacedScan read;
+  for (const PlacedScan& scan : scans) {
+    ASSERT_TRUE(spool.next(read));
+    expectEqualHeights(read, scan);
+  }
+  EXPECT_FALSE(spool.next(read));
 }
 
 TEST(PlacedSpool, LeavesNoFile) {
