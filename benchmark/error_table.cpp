@@ -81,6 +81,8 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
   }
   for (const LabelledScan& labelled : scans) cleaner.compare(labelled.scan);
   cleaner.segmentGround();
+  for (const LabelledScan& labelled : scans) cleaner.measureFloors(labelled.scan);
+  cleaner.segmentFloors();
 
   const MatrixConfig& matrix = config.matrix;
   Table heights(kHeights), ranges(kRanges);

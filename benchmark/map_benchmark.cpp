@@ -96,6 +96,10 @@ void road(State& state) {
     if (cleaner->needsEncoding()) forEachScan([&](const Scan& scan) { cleaner->encode(scan); });
     forEachScan([&](const Scan& scan) { cleaner->compare(scan); });
     cleaner->segmentGround();
+    if (cleaner->needsFloors()) {
+      forEachScan([&](const Scan& scan) { cleaner->measureFloors(scan); });
+      cleaner->segmentFloors();
+    }
     forEachScan([&](const Scan& scan) { benchmark::DoNotOptimize(cleaner->classify(scan)); });
   }
   using benchmark::Counter;

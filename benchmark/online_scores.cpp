@@ -58,6 +58,8 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
   cleaner.estimateGround();
   for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
   cleaner.segmentGround();
+  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
+  cleaner.segmentFloors();
   std::size_t points = 0, agreeing = 0;
   for (const LabelledScan& scan : scans) {
     const Classes replayed = cleaner.classify(scan.scan);

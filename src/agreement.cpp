@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "beautymap/evidence.h"
+
 namespace beautymap {
 namespace {
 
@@ -129,6 +131,28 @@ BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const Agreem
   return noise;
 }
 
+BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
+  BitGrid floors(window.occupied.window(), 0);
+  BitGrid surfaces = floors;
+  for (int x = 0; x < floors.size(); ++x) {
+    for (int y = 0; y < floors.size(); ++y) {
+      const Bits staying = window.occupied.at(x, y) & ~window.suspected.at(x, y) &
+                           ~window.leaning.at(x, y) & ~window.unknown.at(x, y);
+      surfaces.at(x, y) = staying & ~(staying >> 1) & ~lowBits(ground_bit + 1);
+    }
+  }
+  for (int x = 1; x + 1 < floors.size(); ++x) {
+    for (int y = 1; y + 1 < floors.size(); ++y) {
+      if (surfaces.at(x, y) == 0) continue;
+      BitCounters<4> columns;  // as high as each bit; the middle one is as high as its own
+      for (const Bits near : around(surfaces, x, y))
+        columns.increment(near | near << 1 | near >> 1);
+      floors.at(x, y) = surfaces.at(x, y) & columns.above(config.floor_neighbours);
+    }
+  }
+  return floors;
+}
+
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
   struct Column {
@@ -153,12 +177,13 @@ void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
   }
 }
 
-int agreementMargin(const AgreementConfig& config) { return 1 + config.join_rounds; }
+int agreementMargin(const AgreementConfig& config) { return 2 + config.join_rounds; }
 
-BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
+BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config) {
   BitGrid dynamic = window.suspected;
-  excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
   excludeCells(dynamic, surfaceNoise(window, config.surface_bits));
+  excludeCells(window.occupied, floorCells(window, ground_bit, config));
+  excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
   excludeCells(dynamic, overheadNoise(window, ground_bit, config));
   growObjects(window, dynamic, ground_bit, config);
   return dynamic;

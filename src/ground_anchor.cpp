@@ -39,6 +39,7 @@ void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& conf
   move(tile.unknown[column]);
   move(tile.dynamic[column]);
   if (tile.evidence.has(column)) tile.evidence.touch(column).shift(bits, mask);
+  if (tile.floors.has(column)) tile.floors.touch(column).bit += bits;
   const bool layer = config.ground_layer.enabled;
   // Without a ground layer the bins divide one cell: they belong to another one now.
   const long bins = layer       ? std::lround(up / config.ground_layer.bin_height)

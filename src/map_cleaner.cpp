@@ -208,6 +208,24 @@ void MapCleaner::segmentGround() {
   clock.lap("fine_ground");
 }
 
+void MapCleaner::measureFloors(const Scan& scan) {
+  place(scan, view_);
+  addTimes(view_);
+  measureFloors(view_);
+}
+
+void MapCleaner::measureFloors(const ScanView& view) {
+  StageClock clock(times_);
+  judgement_.countFloorPoints(map_, view.placed);
+  clock.lap("floors");
+}
+
+void MapCleaner::segmentFloors() {
+  StageClock clock(times_);
+  judgement_.segmentGround(map_, tilesOf(map_));
+  clock.lap("floors");
+}
+
 std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
   std::vector<PointClass> classes;
   place(scan, view_);

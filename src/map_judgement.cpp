@@ -26,6 +26,7 @@ MapJudgement::MapJudgement(const Config& config)
     : config_(config),
       encoding_(config.matrix),
       ground_layer_(config.ground_layer, config.matrix.res_h),
+      floor_layer_(config.ground_layer, config.matrix),
       below_ground_(depthBelowGround(config.matrix)) {}
 
 int MapJudgement::fineBins() const {
@@ -93,17 +94,22 @@ void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& 
   }
 }
 
-void MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+bool MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
   const bool divides = config_.coarse_ground.enabled && config_.fine_ground.enabled;
+  bool changed = false;
   for (const ColumnIndex index : tiles) {
     Tile& tile = *map.findTile(index);
+    const auto static_bins = tile.static_bins;
     if (usesGroundLayer()) {
       findGroundLayers(tile, ground_layer_, config_.matrix.bits_below, config_.evidence);
     } else if (divides) {
       segmentFineGround(tile, config_.fine_ground,
                         config_.evidence.enabled ? config_.matrix.bits_below : -1);
     }
+    changed |= tile.static_bins != static_bins;
+    if (usesFloors()) changed |= findFloors(tile, floor_layer_, config_.matrix.bits_below);
   }
+  return changed;
 }
 
 int MapJudgement::groundBit(const Tile& tile, std::size_t column) const {
@@ -149,6 +155,23 @@ void MapJudgement::countGroundPoints(TileMap& map, const PlacedScan& scan) const
   }
 }
 
+void MapJudgement::countFloorPoints(TileMap& map, const PlacedScan& scan) const {
+  if (!usesFloors()) return;
+  forEachTileRun(map, scan, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
+    if (!tile->floors.has(column)) return;
+    FloorCell& floor = tile->floors.touch(column);
+    const float ground = tile->ground[column];
+    if (encoding_.bitIndex(run.lowest, ground) > floor.bit ||
+        encoding_.bitIndex(run.highest, ground) < floor.bit) {
+      return;
+    }
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const int bin = floor_layer_.binOf(scan.z[i], ground) - floor.bit * FloorCell::kBins;
+      if (bin >= 0 && bin < FloorCell::kBins) ++floor.counts[static_cast<std::size_t>(bin)];
+    }
+  });
+}
+
 bool MapJudgement::countsGround(const Tile& tile, std::size_t column) const {
   if (config_.evidence.enabled) return true;
   const Bits occupied = tile.occupied[column];
@@ -168,11 +191,18 @@ bool MapJudgement::isDynamic(const Tile& tile, std::size_t column, float z, Bits
   const int bin = groundBin(tile, column, z);
   if (usesGroundLayer()) {
     if (bin >= 0 && bin < ground_bins) return false;
-    // What lies in the ground cell above the ground surface goes with the cell above.
-    const int judged = bit == groundBit(tile, column) ? bit + 1 : bit;
+    // What lies in the ground cell or a floor cell above the surface goes with the cell above.
+    const int judged =
+        bit == groundBit(tile, column) || isAboveFloor(tile, column, z, bit) ? bit + 1 : bit;
     return (dynamic >> judged & 1) != 0;
   }
   return (dynamic >> bit & 1) != 0 || (ground_bins > 0 && bin >= ground_bins);
+}
+
+bool MapJudgement::isAboveFloor(const Tile& tile, std::size_t column, float z, int bit) const {
+  const FloorCell& floor = tile.floors[column];
+  return floor.bit == bit &&
+         floor_layer_.binOf(z, tile.ground[column]) >= bit * FloorCell::kBins + floor.static_bins;
 }
 
 void MapJudgement::classify(const TileMap& map, const PlacedScan& scan,

@@ -61,6 +61,7 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
   addOccupied();
   clock.lap("binary_encoding");
   judgement_.countGroundPoints(map_, placed_);
+  judgement_.countFloorPoints(map_, placed_);
   clock.lap("fine_ground");
   addHitEvidence();
   clock.lap("evidence");
@@ -221,10 +222,9 @@ void OnlineMap::settle() {
   for (const ColumnIndex index : withNeighbours(map_, changed)) {
     Tile& tile = *map_.findTile(index);
     const auto dynamic = tile.dynamic;
-    const auto static_bins = tile.static_bins;
     judgement_.judgeAgreement(map_, {index});
-    judgement_.segmentGround(map_, {index});
-    if (dynamic != tile.dynamic || static_bins != tile.static_bins) ++tile.revision;
+    const bool divided = judgement_.segmentGround(map_, {index});
+    if (divided || dynamic != tile.dynamic) ++tile.revision;
   }
 }
 

@@ -24,11 +24,11 @@ void TileMap::merge(const BitGrid& grid, std::array<Bits, Tile::kColumns> Tile::
 std::size_t TileMap::memoryBytes() const {
   const std::size_t fine =
       sizeof(std::uint32_t) * Tile::kColumns * static_cast<std::size_t>(fine_bins_);
-  std::size_t evidence = 0;
+  std::size_t sparse = 0;
   for (const auto& tile : tiles_) {
-    evidence += tile.second->evidence.memoryBytes();
+    sparse += tile.second->evidence.memoryBytes() + tile.second->floors.memoryBytes();
   }
-  return tiles_.size() * (sizeof(Tile) + fine) + evidence;
+  return tiles_.size() * (sizeof(Tile) + fine) + sparse;
 }
 
 }  // namespace beautymap

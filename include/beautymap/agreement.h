@@ -37,6 +37,13 @@ BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits);
 /// @return  for the columns one in from the window's border; no bits at the border
 BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 
+/// The cells that are a floor above the ground cell: nothing is on them that stays, and
+/// floor_neighbours of the 8 columns around have such a surface within a bit of their height. As
+/// the ground below does, a floor (a deck, a step, a storey's) says nothing about what stands on
+/// it.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
+
 /// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
 /// object: a share of their occupied neighbours is dynamic (a larger one for unknown cells, of
 /// which nothing says that they moved), and they do not rest on a cell that stays (what is seen
@@ -50,8 +57,8 @@ void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
 int agreementMargin(const AgreementConfig& config);
 
 /// The dynamic cells: the suspected ones with support that are no noise, and what joins them round
-/// by round.
+/// by round. Floors count as little as the ground does.
 /// @return  valid for the columns agreementMargin() in from the window's border
-BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
+BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config);
 
 }  // namespace beautymap

@@ -116,6 +116,7 @@ struct GroundLayerConfig {
   double tail_share = 0.1;
   double min_low_peak = 0.25;
   double min_contrast = 4.0;
+  bool floors = true;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -135,6 +136,9 @@ struct GroundLayerConfig {
       "a ground cell that was itself seen free or seldom hit, below a moving object, is "
       "ground only if it holds this many times the points of the cell above; where it was "
       "seldom hit, that many times the object's hits will do, too");
+    v("floors", floors, false, true, "",
+      "split the cell of a surface above the ground, on which something moved (a deck, a step, a "
+      "storey), in the same way");
   }
 };
 
@@ -206,6 +210,7 @@ struct AgreementConfig {
   int join_rounds = 8;
   int surface_bits = 2;
   int overhead_bits = 10;
+  int floor_neighbours = 7;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -223,6 +228,9 @@ struct AgreementConfig {
     v("overhead_bits", overhead_bits, 0, 64, "bits",
       "that high above ground such a layer is noise also where it hangs free, with no other "
       "dynamic cells below and above it: a ceiling, a roof");
+    v("floor_neighbours", floor_neighbours, 1, 9, "columns",
+      "a cell that stays is part of a floor, which says nothing about what stands on it, where "
+      "that many of the columns around have a surface as high; 9: never");
   }
 };
 

@@ -35,6 +35,8 @@ struct ScanView {
 ///   observe(scan)...   heights of the columns       -> estimateGround()
 ///   encode(scan)...    M_map; not with evidence, which finds it while comparing
 ///   compare(scan)...   M_dyn or evidence per scan   -> segmentGround()
+///   measureFloors(scan)...  heights on surfaces above the ground, only with evidence
+///                                                   -> segmentFloors()
 ///   classify(scan)     static or dynamic, per point
 ///
 /// Evidence needs compare() in the order of time. Otherwise any order will do within a phase (the
@@ -56,19 +58,23 @@ class MapCleaner {
   void encode(const Scan& scan);
   void compare(const Scan& scan);
   void segmentGround();
+  bool needsFloors() const { return config_.evidence.enabled; }
+  void measureFloors(const Scan& scan);
+  void segmentFloors();
 
   /// One class per point of the scan's cloud.
   std::vector<PointClass> classify(const Scan& scan);
 
   // The same in parts, so that a scan is placed once, before it is observed: the later phases take
-  // it from where it was kept (classify() needs no x and y, the published method only in place()).
-  // startAt() must know the first scan's sensor before.
+  // it from where it was kept (measureFloors() and classify() need no x and y, the published method
+  // only in place()). startAt() must know the first scan's sensor before.
   void startAt(const Eigen::Vector3d& sensor_in_map);
   void place(const Scan& scan, ScanView& view) const;
   void observe(const ScanView& view);
   void encode(const ScanView& view);
   void look(ScanView& view) const;
   void add(const ScanView& view);
+  void measureFloors(const ScanView& view);
   void classify(ScanView& view, std::vector<PointClass>& classes) const;
   /// Counts a view's times, which observe() and add() do by themselves.
   void addTimes(const ScanView& view) { times_.add(view.times); }

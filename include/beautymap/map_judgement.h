@@ -6,6 +6,7 @@
 
 #include "beautymap/binary_encoding.h"
 #include "beautymap/config.h"
+#include "beautymap/floor_layer.h"
 #include "beautymap/ground_layer.h"
 #include "beautymap/scan.h"
 #include "beautymap/tile_map.h"
@@ -33,6 +34,8 @@ class MapJudgement {
   /// Counts the heights of a scan's points near the ground of their columns; not in columns that
   /// are known to be flat.
   void countGroundPoints(TileMap& map, const PlacedScan& scan) const;
+  /// Counts the heights of a scan's points in the floor cells that segmentGround() found.
+  void countFloorPoints(TileMap& map, const PlacedScan& scan) const;
 
   /// Marks the cells that their own evidence holds for dynamic (Tile::suspected, Tile::strong).
   void judgeEvidence(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
@@ -41,8 +44,10 @@ class MapJudgement {
   /// Tile::dynamic: the suspected cells that their neighbours support. The tiles beside those that
   /// judgeEvidence changed depend on them, too: see withNeighbours().
   void judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
-  /// Divides the ground cells of columns with dynamic cells into ground and object points.
-  void segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// Divides the ground cells of columns with dynamic cells, and floor cells by what was counted
+  /// until now, into points of the surface and of the object on it.
+  /// @return  whether any cell is divided otherwise than before
+  bool segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
 
   /// Whether a point of a column is removed.
   /// @param z  its height [m] above the map's z origin
@@ -59,6 +64,7 @@ class MapJudgement {
 
  private:
   bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }
+  bool usesFloors() const { return usesGroundLayer() && config_.ground_layer.floors; }
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
@@ -70,7 +76,8 @@ class MapJudgement {
     const int bin = usesGroundLayer() ? layerBin(tile, column, z) : fineBin(tile, column, z);
     return bin < tile.fineBins() ? bin : -1;
   }
-  // The same, but the number of bins above them: monotonic.
+  bool isAboveFloor(const Tile& tile, std::size_t column, float z, int bit) const;
+  // groundBin(), but the number of bins above them: monotonic.
   int layerBin(const Tile& tile, std::size_t column, float z) const {
     return ground_layer_.binOf(z - tile.ground[column] - below_ground_);
   }
@@ -79,6 +86,7 @@ class MapJudgement {
   Config config_;
   BinaryEncoding encoding_;
   GroundLayer ground_layer_;
+  FloorLayer floor_layer_;
   float below_ground_;
 };
 

@@ -20,6 +20,16 @@
 
 namespace beautymap {
 
+/// A cell above the ground that stays while something moved on its surface, and the heights of its
+/// points: see FloorLayer.
+struct FloorCell {
+  static constexpr int kBins = 8;
+  using Counts = std::array<std::uint32_t, kBins>;
+  std::int32_t bit = -1;             ///< of the column; -1: none
+  std::int32_t static_bins = kBins;  ///< bins, from below, that stay
+  Counts counts{};                   ///< points per bin, since the cell is known as a floor
+};
+
 /// A square of columns, one array per quantity. Heights are [m] above the map's z origin.
 struct Tile {
   static constexpr int kShift = 5;
@@ -49,6 +59,7 @@ struct Tile {
       static_bins{};  ///< fine bins of the ground cell that stay; 0: all
   SparseColumns<ColumnEvidence, kColumns> evidence;  ///< of columns that were observed
   std::vector<std::uint32_t> fine_counts;            ///< points per fine bin of the ground cell
+  SparseColumns<FloorCell, kColumns> floors;         ///< of columns that have one
 
   // Of maps of which all points are known before they are judged (MapCleaner).
   std::array<float, kColumns> highest;    ///< highest point; -kNoHeight: no point

@@ -78,6 +78,13 @@ class OfflineRun {
         [&](ReadScan& s) { cleaner_.look(s.view); },
         [&](const ReadScan& s) { cleaner_.add(s.view); });
     cleaner_.segmentGround();
+    if (cleaner_.needsFloors()) {
+      pass(
+          "measuring floors",
+          [&](ReadScan& s) { return placed_.next(s.view.placed, Part::kHeights); },
+          [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.measureFloors(s.view); });
+      cleaner_.segmentFloors();
+    }
     write();
     for (const auto& stage : cleaner_.times().stages())
       report_.stages.add(stage.first, stage.second);

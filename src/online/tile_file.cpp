@@ -16,7 +16,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 2\n";
+constexpr char kMagic[] = "beautymap tiles 3\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -37,7 +37,9 @@ Meaning meaningOf(const Config& config) {
           config.ground_layer.enabled ? 1 : 0};
 }
 
-static_assert(std::is_trivially_copyable<ColumnEvidence>::value, "it is stored as it is");
+static_assert(std::is_trivially_copyable<ColumnEvidence>::value &&
+                  std::is_trivially_copyable<FloorCell>::value,
+              "they are stored as they are");
 
 /// Calls f(data, bytes) for each array of a tile.
 template <typename TileType, typename F>
@@ -105,6 +107,8 @@ void TileFileWriter::append(ColumnIndex index, const Tile& tile, const TilePoint
   forEachArray(tile, [&](const void* data, std::size_t size) { write(data, size); });
   writeVector(tile.evidence.places());
   writeVector(tile.evidence.values());
+  writeVector(tile.floors.places());
+  writeVector(tile.floors.values());
   writeVector(points.records);
   writeVector(points.column);
   writeVector(points.z);
@@ -193,18 +197,21 @@ bool TileFileReader::next(ColumnIndex& index, Tile& tile, TilePoints& points) {
   if (kind != kTile) throw InputError("'" + path_ + "' is damaged");
   read(&index, sizeof(index));
   forEachArray(tile, [&](void* data, std::size_t size) { read(data, size); });
-  std::vector<std::uint16_t> places;
-  std::vector<ColumnEvidence> evidence;
-  readVector(places);
-  readVector(evidence);
+  const auto readSparse = [&](auto& columns, auto values) {
+    std::vector<std::uint16_t> places;
+    readVector(places);
+    readVector(values);
+    return columns.assign(std::move(places), std::move(values));
+  };
+  const bool has_evidence = readSparse(tile.evidence, std::vector<ColumnEvidence>());
+  const bool has_floors = readSparse(tile.floors, std::vector<FloorCell>());
   readVector(points.records);
   readVector(points.column);
   readVector(points.z);
   std::vector<std::uint64_t> keys;
   readVector(keys);
   for (const std::uint64_t key : keys) points.voxels.insert(key);
-  const bool consistent = tile.evidence.assign(std::move(places), std::move(evidence)) &&
-                          points.z.size() == points.size() &&
+  const bool consistent = has_evidence && has_floors && points.z.size() == points.size() &&
                           points.records.size() == points.size() * header_.layout.point_step &&
                           std::all_of(points.column.begin(), points.column.end(),
                                       [](std::uint16_t column) { return column < Tile::kColumns; });

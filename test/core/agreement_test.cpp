@@ -228,6 +228,94 @@ TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
   EXPECT_GT(staying, 10000);
 }
 
+TEST(Agreement, AFloorSaysNothingAboutWhatStandsOnIt) {
+  const AgreementConfig config;
+  const int deck = kGround + 20;
+  EvidenceWindow window = emptyWindow(25);
+  set(window.occupied, {0, 24, 0, 24, deck, deck});
+  setSuspected(window, {11, 13, 11, 13, deck + 1, deck + 7});
+  // The object's feet, which only lean.
+  set(window.occupied, {14, 14, 11, 13, deck + 1, deck + 4});
+  set(window.leaning, {14, 14, 11, 13, deck + 1, deck + 4});
+  BitGrid expected = window.suspected;
+  set(expected, {14, 14, 11, 13, deck + 1, deck + 4});
+  const BitGrid dynamic = dynamicCells(window, kGround, config);
+  for (int x = 11; x <= 14; ++x) {
+    for (int y = 11; y <= 13; ++y) EXPECT_EQ(dynamic.at(x, y), expected.at(x, y)) << x << ", " << y;
+  }
+  EXPECT_EQ(countOf(dynamic), countOf(expected));
+  AgreementConfig without = config;
+  without.floor_neighbours = 9;
+  EXPECT_LT(countOf(dynamicCells(window, kGround, without)), countOf(expected));
+}
+
+TEST(Agreement, AFloorIsWideAndLevel) {
+  const AgreementConfig config;
+  EvidenceWindow window = emptyWindow(9);
+  set(window.occupied, {0, 8, 0, 8, 30, 30});
+  EXPECT_EQ(countOf(floorCells(window, kGround, config)), 7 * 7);
+  EXPECT_EQ(countOf(floorCells(window, 30, config)), 0) << "the ground is none";
+  // Two columns wide: the top of a wall.
+  window = emptyWindow(9);
+  set(window.occupied, {3, 4, 0, 8, kGround, 30});
+  EXPECT_EQ(countOf(floorCells(window, kGround, config)), 0);
+  // Steps of one bit are level enough, steps of two are not.
+  for (const int step : {1, 2}) {
+    window = emptyWindow(9);
+    for (int x = 0; x < 9; ++x) set(window.occupied, {x, x, 0, 8, 30 + step * x, 30 + step * x});
+    EXPECT_EQ(countOf(floorCells(window, kGround, config)), step == 1 ? 7 * 7 : 0);
+  }
+  // What may have moved is no floor.
+  window = emptyWindow(9);
+  set(window.occupied, {0, 8, 0, 8, 30, 30});
+  set(window.leaning, {0, 8, 0, 8, 30, 30});
+  EXPECT_EQ(countOf(floorCells(window, kGround, config)), 0);
+}
+
+/// The rule of floors, one cell after the other.
+bool isSurface(const EvidenceWindow& window, int x, int y, int bit, int ground_bit) {
+  const auto stays = [&](int at) {
+    return isSet(window.occupied, x, y, at) && !isSet(window.suspected, x, y, at) &&
+           !isSet(window.leaning, x, y, at) && !isSet(window.unknown, x, y, at);
+  };
+  return bit > ground_bit && stays(bit) && !stays(bit + 1);
+}
+
+TEST(Agreement, FloorsAgreeWithLoopsOverTheNeighbours) {
+  int floors = 0, others = 0;
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    const int ground_bit = random.integer(-1, 40);
+    AgreementConfig config;
+    config.floor_neighbours = random.integer(1, 9);
+    const BitGrid result = floorCells(window, ground_bit, config);
+    const int size = result.size();
+    for (int x = 0; x < size; ++x) {
+      for (int y = 0; y < size; ++y) {
+        const bool border = x == 0 || y == 0 || x == size - 1 || y == size - 1;
+        for (int bit = 0; bit < kMaxBits; ++bit) {
+          int level = 0;
+          for (int at = 0; at < 9 && !border; ++at) {
+            const int nx = x + at / 3 - 1, ny = y + at % 3 - 1;
+            if (at == 4) continue;
+            level += isSurface(window, nx, ny, bit - 1, ground_bit) ||
+                     isSurface(window, nx, ny, bit, ground_bit) ||
+                     isSurface(window, nx, ny, bit + 1, ground_bit);
+          }
+          const bool expected = !border && isSurface(window, x, y, bit, ground_bit) &&
+                                level >= config.floor_neighbours;
+          ASSERT_EQ(isSet(result, x, y, bit), expected)
+              << "seed " << seed << " column " << x << ", " << y << " bit " << bit;
+          ++(expected ? floors : others);
+        }
+      }
+    }
+  }
+  EXPECT_GT(floors, 200);
+  EXPECT_GT(others, 10000);
+}
+
 TEST(Agreement, WhatIsThinUponASurfaceIsItsNoise) {
   EvidenceWindow window = emptyWindow(9);
   set(window.occupied, {0, 8, 0, 8, kGround, kGround});

@@ -40,7 +40,8 @@ TEST(GroundAnchor, EverythingOfAColumnMovesByTheSameHeight) {
     test::Random random(seed);
     Config config = dyadicConfig();
     config.matrix.n_bit = random.pick<int>({24, 40, 64});
-    const Tile before = randomColumn(random, config);
+    Tile before = randomColumn(random, config);
+    before.floors.touch(kColumn).bit = 20;
     Tile after = before;
     const int bits = random.integer(-12, 12);
     moveBottom(after, kColumn, static_cast<float>(-bits * config.matrix.res_h), config);
@@ -56,6 +57,7 @@ TEST(GroundAnchor, EverythingOfAColumnMovesByTheSameHeight) {
       EXPECT_EQ(moved.freeBetween(bit), inside ? old.freeBetween(from) : 0);
       EXPECT_EQ(moved.freeAfter(bit), inside ? old.freeAfter(from) : 0);
     }
+    EXPECT_EQ(after.floors[kColumn].bit, 20 + bits);
     const int bins = before.fineBins();
     for (int bin = 0; bin < bins; ++bin) {
       const int from = bin - 4 * bits;

@@ -30,6 +30,8 @@ MapCleaner clean(const std::vector<Scan>& scans, const Config& config) {
   for (const Scan& scan : scans) cleaner.encode(scan);
   for (const Scan& scan : scans) cleaner.compare(scan);
   cleaner.segmentGround();
+  for (const Scan& scan : scans) cleaner.measureFloors(scan);
+  cleaner.segmentFloors();
   return cleaner;
 }
 
@@ -184,6 +186,8 @@ TEST_P(MapCleanerProperties, TheOrderOfTheScansMayDifferBetweenPhases) {
   for (auto scan = scans_.rbegin(); scan != scans_.rend(); ++scan) cleaner.encode(*scan);
   for (std::size_t i = 0; i < scans_.size(); ++i) cleaner.compare(scans_[(i + 2) % scans_.size()]);
   cleaner.segmentGround();
+  for (const Scan& scan : scans_) cleaner.measureFloors(scan);
+  cleaner.segmentFloors();
   EXPECT_EQ(classify(cleaner, scans_), cleanedClasses(scans_, config_));
 }
 

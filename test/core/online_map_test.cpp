@@ -124,6 +124,8 @@ TEST(OnlineMap, ScansOfAKnownGroundGiveTheMapOfAReplay) {
   for (const LabelledScan& scan : scans) cleaner.encode(scan.scan);
   for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
   cleaner.segmentGround();
+  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
+  cleaner.segmentFloors();
   int differing = 0, dynamic = 0;
   for (const LabelledScan& scan : scans) {
     const Classes online = classesOf(map, scan.scan);

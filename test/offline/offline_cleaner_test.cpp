@@ -81,6 +81,8 @@ std::vector<PointClass> classesOf(const std::vector<SourceScan>& sources) {
   for (const Scan& scan : scans) cleaner.encode(scan);
   for (const Scan& scan : scans) cleaner.compare(scan);
   cleaner.segmentGround();
+  for (const Scan& scan : scans) cleaner.measureFloors(scan);
+  cleaner.segmentFloors();
   std::vector<PointClass> classes;
   for (const Scan& scan : scans) {
     const std::vector<PointClass> of_scan = cleaner.classify(scan);

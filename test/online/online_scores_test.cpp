@@ -65,6 +65,8 @@ void expectScoresOfAReplay(const std::string& scene, const std::string& sensor) 
   cleaner.estimateGround();
   for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
   cleaner.segmentGround();
+  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
+  cleaner.segmentFloors();
   Score online, replay;
   for (const LabelledScan& scan : scans) {
     count(scan, map.classify(scan.scan), online);
