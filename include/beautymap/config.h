@@ -148,7 +148,7 @@ struct VisibilityConfig {
   double pixel_deg = 0.2;
   int min_beams = 2;
   double min_share = 0.8;
-  double margin = 0.1;
+  double margin = 0.05;
   double pose_position = 0.0;
   double pose_rotation = 0.0;
 
