@@ -68,6 +68,7 @@ void scan_in_map(State& state) {
     cleaner.observe(scan);
     if (cleaner.needsEncoding()) cleaner.encode(scan);
     cleaner.compare(scan);
+    if (cleaner.needsFloors()) cleaner.measureFloors(scan);
     benchmark::DoNotOptimize(cleaner.classify(scan));
   }
   state.counters["tiles"] = static_cast<double>(cleaner.map().tileCount());

@@ -40,6 +40,10 @@ struct Prepared {
     for (const Scan& s : scans) cleaner.encode(s);
     for (const Scan& s : scans) cleaner.compare(s);
     cleaner.segmentGround();
+    if (cleaner.needsFloors()) {
+      for (const Scan& s : scans) cleaner.measureFloors(s);
+      cleaner.segmentFloors();
+    }
     DroppedPoints dropped;
     placed = placeScan(scan, cleaner.zOrigin(), c.matrix.res_g, c.scan, dropped);
     window = mapWindow();
@@ -184,6 +188,7 @@ void whole_scan(State& state) {
     if (p.cleaner.needsEncoding()) p.cleaner.encode(view);
     p.cleaner.look(view);
     p.cleaner.add(view);
+    if (p.cleaner.needsFloors()) p.cleaner.measureFloors(view);
     p.cleaner.classify(view, classes);
     DoNotOptimize(classes.data());
   });
