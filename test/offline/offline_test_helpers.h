@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -143,5 +145,18 @@ class MemorySource : public ScanSource {
   std::size_t next_ = 0;
   std::size_t reads_ = 0;
 };
+
+/// Writes each scan in a thread of its own.
+/// @return their places in the spool's file
+template <typename Spool, typename ScanType>
+std::vector<std::int64_t> writeInThreads(Spool& spool, const std::vector<ScanType>& scans) {
+  std::vector<std::int64_t> places(scans.size());
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    threads.emplace_back([&, i] { places[i] = spool.write(scans[i]); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return places;
+}
 
 }  // namespace beautymap::test

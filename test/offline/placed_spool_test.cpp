@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "beautymap/io/scan_source.h"
@@ -70,12 +69,7 @@ TEST(PlacedSpool, ScansComeBackInTheOrderInWhichTheyAreAdded) {
   const std::vector<PlacedScan> scans = placedScans();
   const test::OutputFolder folder;
   PlacedSpool spool(folder.path());
-  std::vector<std::int64_t> places(scans.size());
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    threads.emplace_back([&, i] { places[i] = spool.write(scans[i]); });
-  }
-  for (std::thread& thread : threads) thread.join();
+  const std::vector<std::int64_t> places = test::writeInThreads(spool, scans);
   // One that is not added is not in the spool.
   for (std::size_t i = 1; i < scans.size(); ++i) spool.add(places[i]);
   EXPECT_EQ(spool.size(), scans.size() - 1);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
 #include <vector>
 
 #include "offline/offline_test_helpers.h"
@@ -53,12 +52,7 @@ TEST(ScanSpool, ScansComeBackInTheOrderInWhichTheyAreAdded) {
   const std::vector<SourceScan> scans = test::sourceDrive(4);
   const test::OutputFolder folder;
   ScanSpool spool(folder.path());
-  std::vector<std::int64_t> places(scans.size());
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    threads.emplace_back([&, i] { places[i] = spool.write(scans[i]); });
-  }
-  for (std::thread& thread : threads) thread.join();
+  const std::vector<std::int64_t> places = test::writeInThreads(spool, scans);
   // One that is not added is not in the spool.
   for (std::size_t i = 1; i < scans.size(); ++i) spool.add(scans[i], places[i]);
   EXPECT_EQ(spool.size(), scans.size() - 1);
