@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "beautymap/ground_layer.h"
+
 namespace beautymap {
 
 FloorLayer::FloorLayer(const GroundLayerConfig& config, const MatrixConfig& matrix)
@@ -18,18 +20,16 @@ FloorLayer::FloorLayer(const GroundLayerConfig& config, const MatrixConfig& matr
       min_contrast_(config.min_contrast) {}
 
 int FloorLayer::staticBins(const FloorCell::Counts& counts) const {
-  const auto peak = std::max_element(counts.begin(), counts.end());
+  const auto* begin = counts.data();
+  const auto* end = begin + counts.size();
+  const auto* peak = std::max_element(begin, end);
   if (*peak == 0) return FloorCell::kBins;
-  const auto last =
-      counts.end() - peak > max_bins_above_peak_ ? peak + max_bins_above_peak_ : counts.end() - 1;
-  const double tail = tail_share_ * *peak;
-  auto top = peak;
-  while (top < last && top[1] >= tail) ++top;
-  const auto above = top + 1;
-  const double rest = std::accumulate(above, counts.end(), 0.0);
+  const auto* last = std::min(end - 1, peak + max_bins_above_peak_);
+  const auto* above = topOfLayer(peak, last, tail_share_) + 1;
+  const double rest = std::accumulate(above, end, 0.0);
   // Of a wall or a bush every bin holds as much as the next.
-  const bool is_surface = *peak * static_cast<double>(counts.end() - above) >= min_contrast_ * rest;
-  return is_surface ? static_cast<int>(above - counts.begin()) : FloorCell::kBins;
+  const bool is_surface = *peak * static_cast<double>(end - above) >= min_contrast_ * rest;
+  return is_surface ? static_cast<int>(above - begin) : FloorCell::kBins;
 }
 
 int floorBit(Bits occupied, Bits dynamic, int ground_bit) {

@@ -38,11 +38,8 @@ int GroundLayer::groundBins(const std::uint32_t* counts, bool object_above) cons
     if (*low_peak >= min_low_peak_ * *peak) peak = low_peak;
   }
   if (*peak == 0) return 0;
-  const double tail = tail_share_ * *peak;
   const auto* last = std::min(counts + bins_ - 1, peak + max_bins_above_peak_);
-  const auto* top = peak;
-  while (top < last && top[1] >= tail) ++top;
-  return static_cast<int>(top - counts) + 1;
+  return static_cast<int>(topOfLayer(peak, last, tail_share_) - counts) + 1;
 }
 
 bool GroundLayer::standsOut(const std::uint32_t* counts) const {
@@ -50,6 +47,14 @@ bool GroundLayer::standsOut(const std::uint32_t* counts) const {
     return std::accumulate(counts + begin, counts + end, 0.0) / std::max(1, end - begin);
   };
   return mean(cell_begin_, cell_end_) >= min_contrast_ * mean(cell_end_, above_end_);
+}
+
+const std::uint32_t* topOfLayer(const std::uint32_t* peak, const std::uint32_t* last,
+                                double tail_share) {
+  const double tail = tail_share * *peak;
+  const auto* top = peak;
+  while (top < last && top[1] >= tail) ++top;
+  return top;
 }
 
 bool mayBeObject(const ColumnEvidence& evidence, Bits dynamic, double min_contrast, int ground_bit,

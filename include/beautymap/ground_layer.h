@@ -52,6 +52,11 @@ class GroundLayer {
   int above_end_;
 };
 
+/// The highest bin of a surface's layer: from the peak of the counts up to where they have fallen
+/// below a share of it, at most to the last bin.
+const std::uint32_t* topOfLayer(const std::uint32_t* peak, const std::uint32_t* last,
+                                double tail_share);
+
 /// Whether the ground cell below an object may hold the object's lower end and no ground: its own
 /// evidence for that is strong; or it is hardly known, and the lowest cells were hit in less than
 /// min_contrast times the scans that hit the object above them. So a flight of stairs is seen from
