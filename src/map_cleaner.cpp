@@ -222,7 +222,7 @@ void MapCleaner::measureFloors(const ScanView& view) {
 
 void MapCleaner::segmentFloors() {
   StageClock clock(times_);
-  judgement_.segmentGround(map_, tilesOf(map_));
+  judgement_.segmentFloors(map_, tilesOf(map_));
   clock.lap("floors");
 }
 

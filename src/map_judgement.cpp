@@ -107,7 +107,16 @@ bool MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& t
                         config_.evidence.enabled ? config_.matrix.bits_below : -1);
     }
     changed |= tile.static_bins != static_bins;
-    if (usesFloors()) changed |= findFloors(tile, floor_layer_, config_.matrix.bits_below);
+  }
+  const bool floors_changed = segmentFloors(map, tiles);
+  return changed || floors_changed;
+}
+
+bool MapJudgement::segmentFloors(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
+  if (!usesFloors()) return false;
+  bool changed = false;
+  for (const ColumnIndex index : tiles) {
+    changed |= findFloors(*map.findTile(index), floor_layer_, config_.matrix.bits_below);
   }
   return changed;
 }

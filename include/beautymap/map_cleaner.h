@@ -58,7 +58,7 @@ class MapCleaner {
   void encode(const Scan& scan);
   void compare(const Scan& scan);
   void segmentGround();
-  bool needsFloors() const { return config_.evidence.enabled; }
+  bool needsFloors() const { return judgement_.usesFloors(); }
   void measureFloors(const Scan& scan);
   void segmentFloors();
 

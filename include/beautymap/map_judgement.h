@@ -48,6 +48,10 @@ class MapJudgement {
   /// until now, into points of the surface and of the object on it.
   /// @return  whether any cell is divided otherwise than before
   bool segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// The same for the floor cells alone, when more was counted.
+  bool segmentFloors(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// Whether floor cells are divided at all.
+  bool usesFloors() const { return usesGroundLayer() && config_.ground_layer.floors; }
 
   /// Whether a point of a column is removed.
   /// @param z  its height [m] above the map's z origin
@@ -64,7 +68,6 @@ class MapJudgement {
 
  private:
   bool usesGroundLayer() const { return config_.evidence.enabled && config_.ground_layer.enabled; }
-  bool usesFloors() const { return usesGroundLayer() && config_.ground_layer.floors; }
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
