@@ -41,16 +41,43 @@ void MapCleaner::observe(const Scan& scan) {
   observe(view_);
 }
 
-void MapCleaner::observe(const ScanView& view) {
+void MapCleaner::observe(ScanView& view) {
   times_.add(view.times);
   StageClock clock(times_);
   dropped_ += view.dropped;
+  if (levels()) {
+    // Against what is known so far: good enough for the lowest heights, which the ground comes
+    // from.
+    const auto lows = lowestOfColumns(view.placed, config_.levelling.radius);
+    addLevels(map_, view.placed.anchor, lows);
+    applyLevelling(
+        findLevelling(map_, view.placed.anchor, lows, config_.matrix.res_g, config_.levelling),
+        view.placed);
+    clock.lap("levelling");
+  }
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
     tile->lowest[column] = std::min(tile->lowest[column], run.lowest);
     tile->highest[column] = std::max(tile->highest[column], run.highest);
     tile->possible[column] |= height_bins_.bins(view.placed, run);
   });
   clock.lap("coarse_ground");
+}
+
+void MapCleaner::level(ScanView& view) const {
+  view.levelling = {};
+  if (!levels()) return;
+  StageClock clock(view.times);
+  view.levelling = findLevelling(map_, view.placed.anchor,
+                                 lowestOfColumns(view.placed, config_.levelling.radius),
+                                 config_.matrix.res_g, config_.levelling);
+  applyLevelling(view.levelling, view.placed);
+  clock.lap("levelling");
+}
+
+void MapCleaner::placeLevelled(const Scan& scan) {
+  place(scan, view_);
+  level(view_);
+  addTimes(view_);
 }
 
 void MapCleaner::estimateGround() {
@@ -106,6 +133,7 @@ void MapCleaner::compare(const Scan& scan) {
 
 void MapCleaner::look(ScanView& view) const {
   view.times = {};
+  level(view);
   if (config_.evidence.enabled) {
     findFree(view);
   } else {
@@ -209,8 +237,7 @@ void MapCleaner::segmentGround() {
 }
 
 void MapCleaner::measureFloors(const Scan& scan) {
-  place(scan, view_);
-  addTimes(view_);
+  placeLevelled(scan);
   measureFloors(view_);
 }
 
@@ -228,8 +255,7 @@ void MapCleaner::segmentFloors() {
 
 std::vector<PointClass> MapCleaner::classify(const Scan& scan) {
   std::vector<PointClass> classes;
-  place(scan, view_);
-  addTimes(view_);
+  placeLevelled(scan);
   classify(view_, classes);
   addTimes(view_);
   return classes;

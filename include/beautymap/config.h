@@ -54,6 +54,22 @@ struct MatrixConfig {
   }
 };
 
+struct LevellingConfig {
+  bool enabled = true;
+  int radius = 100;
+  double min_correction = 0.03;
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("enabled", enabled, false, true, "",
+      "tilt and raise scans whose ground does not lie where the other scans' does, before they are "
+      "judged (only with evidence)");
+    v("radius", radius, 5, 400, "columns", "half size of the square whose ground is looked at");
+    v("min_correction", min_correction, 0.0, 1.0, "m",
+      "scans that would move by less, root mean square, stay as they are");
+  }
+};
+
 struct CoarseGroundConfig {
   bool enabled = true;
   int radius = 2;
@@ -270,6 +286,7 @@ struct OnlineConfig {
 struct Config {
   ScanConfig scan;
   MatrixConfig matrix;
+  LevellingConfig levelling;
   CoarseGroundConfig coarse_ground;
   RestorationConfig restoration;
   FineGroundConfig fine_ground;
@@ -283,6 +300,7 @@ struct Config {
   void describe(Visitor& v) {
     v.group("scan", scan);
     v.group("matrix", matrix);
+    v.group("levelling", levelling);
     v.group("coarse_ground", coarse_ground);
     v.group("restoration", restoration);
     v.group("fine_ground", fine_ground);

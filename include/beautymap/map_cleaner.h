@@ -11,6 +11,7 @@
 #include "beautymap/config.h"
 #include "beautymap/map_judgement.h"
 #include "beautymap/scan.h"
+#include "beautymap/scan_levelling.h"
 #include "beautymap/sight_mask.h"
 #include "beautymap/stage_times.h"
 #include "beautymap/tile_map.h"
@@ -21,6 +22,7 @@ namespace beautymap {
 struct ScanView {
   PlacedScan placed;
   DroppedPoints dropped;
+  Levelling levelling;  ///< how look() moved the placed scan
   MapWindow map;  ///< the map around the sensor; evidence has possible cells for occupied ones
   BitGrid hit;    ///< cells around the sensor that the scan hit
   /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
@@ -70,8 +72,9 @@ class MapCleaner {
   // only in place()). startAt() must know the first scan's sensor before.
   void startAt(const Eigen::Vector3d& sensor_in_map);
   void place(const Scan& scan, ScanView& view) const;
-  void observe(const ScanView& view);
+  void observe(ScanView& view);
   void encode(const ScanView& view);
+  /// Levels the scan, too: the later phases take it so, or view.levelling is applied to it again.
   void look(ScanView& view) const;
   void add(const ScanView& view);
   void measureFloors(const ScanView& view);
@@ -89,6 +92,10 @@ class MapCleaner {
   double zOrigin() const { return z_origin_.value_or(0.0); }
 
  private:
+  bool levels() const { return config_.evidence.enabled && config_.levelling.enabled; }
+  /// Brings a placed scan's ground to that of all scans, see scan_levelling.h.
+  void level(ScanView& view) const;
+  void placeLevelled(const Scan& scan);
   /// When a tile's ground is known: the cells that can be judged by evidence.
   void findPossibleCells(Tile& tile) const;
   /// The published judgement of one scan: every candidate it leaves is dynamic.

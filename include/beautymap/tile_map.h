@@ -46,7 +46,9 @@ struct Tile {
 
   int fineBins() const { return static_cast<int>(fine_counts.size()) / kColumns; }
 
-  std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
+  std::array<float, kColumns> lowest;                ///< lowest point; kNoHeight: no point
+  std::array<float, kColumns> level{};               ///< mean of scans' lowest points
+  std::array<std::uint8_t, kColumns> level_scans{};  ///< of how many, up to 255
   std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map

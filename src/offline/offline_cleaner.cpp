@@ -76,12 +76,14 @@ class OfflineRun {
     pass(
         "comparing", [&](ReadScan& s) { return placed_.next(s.view.placed); },
         [&](ReadScan& s) { cleaner_.look(s.view); },
-        [&](const ReadScan& s) { cleaner_.add(s.view); });
+        [&](const ReadScan& s) {
+          levellings_.push_back(s.view.levelling);
+          cleaner_.add(s.view);
+        });
     cleaner_.segmentGround();
     if (cleaner_.needsFloors()) {
       pass(
-          "measuring floors",
-          [&](ReadScan& s) { return placed_.next(s.view.placed, Part::kHeights); },
+          "measuring floors", [&](ReadScan& s) { return nextLevelled(s.view.placed); },
           [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.measureFloors(s.view); });
       cleaner_.segmentFloors();
     }
@@ -100,6 +102,8 @@ class OfflineRun {
   using Part = PlacedSpool::Part;
 
   bool nextScan(SourceScan& scan);
+  /// The heights of the next scan of a pass after "comparing".
+  bool nextLevelled(PlacedScan& scan);
   void observe();
   template <typename Read, typename Work, typename Use>
   void pass(const std::string& name, Read read, Work work, Use use);
@@ -110,8 +114,10 @@ class OfflineRun {
   const ProgressListener& progress_;
   std::deque<SourceScan> read_ahead_;  ///< the first scans, until observe() takes them
   MapCleaner cleaner_;
-  ScanSpool spool_;     ///< the scans as they came, for writing
-  PlacedSpool placed_;  ///< the same scans in the map, for the passes between
+  ScanSpool spool_;                    ///< the scans as they came, for writing
+  PlacedSpool placed_;                 ///< the same scans in the map, for the passes between
+  std::vector<Levelling> levellings_;  ///< of the scans, once they are compared
+  std::size_t next_levelling_ = 0;     ///< of the pass at hand
   OfflineReport report_;
   bool labelled_ = true;  ///< until a scan without labels comes
 };
@@ -120,6 +126,12 @@ bool OfflineRun::nextScan(SourceScan& scan) {
   if (read_ahead_.empty()) return source_.next(scan);
   scan = std::move(read_ahead_.front());
   read_ahead_.pop_front();
+  return true;
+}
+
+bool OfflineRun::nextLevelled(PlacedScan& scan) {
+  if (!placed_.next(scan, Part::kHeights)) return false;
+  applyLevelling(levellings_[next_levelling_++], scan);
   return true;
 }
 
@@ -149,7 +161,7 @@ void OfflineRun::observe() {
         read.placed_place = placed_.write(read.view.placed);
         clock.lap("spool");
       },
-      [&](const ReadScan& read) {
+      [&](ReadScan& read) {
         progress_.step();
         if (!spool_.accepts(read.source)) {
           skip("fields differ from the first scan's", "scan " + std::to_string(report_.scans));
@@ -181,6 +193,7 @@ template <typename Read, typename Work, typename Use>
 void OfflineRun::pass(const std::string& name, Read read, Work work, Use use) {
   progress_.begin(name, placed_.size());
   placed_.rewind();
+  next_levelling_ = 0;
   runPipeline<ReadScan>(read, work, [&](ReadScan& scan) {
     use(scan);
     progress_.step();
@@ -195,9 +208,7 @@ void OfflineRun::write() {
   spool_.rewind();
   pass(
       "writing",
-      [&](ReadScan& read) {
-        return placed_.next(read.view.placed, Part::kHeights) && spool_.next(read.source);
-      },
+      [&](ReadScan& read) { return nextLevelled(read.view.placed) && spool_.next(read.source); },
       [&](ReadScan& read) { writer.prepare(read.view, read.source, read.output); },
       [&](ReadScan& read) {
         cleaner_.addTimes(read.view);

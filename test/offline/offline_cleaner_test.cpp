@@ -62,7 +62,8 @@ OfflineOptions into(const OutputFolder& folder) {
 }
 
 /// What the core says about each point, in the order of the ids.
-std::vector<PointClass> classesOf(const std::vector<SourceScan>& sources) {
+std::vector<PointClass> classesOf(const std::vector<SourceScan>& sources,
+                                  const Config& config = testConfig()) {
   std::vector<Scan> scans;
   for (const SourceScan& source : sources) {
     Scan scan;
@@ -75,10 +76,12 @@ std::vector<PointClass> classesOf(const std::vector<SourceScan>& sources) {
     scan.sensor_in_map = source.T_map_sensor.translation();
     scans.push_back(scan);
   }
-  MapCleaner cleaner(testConfig());
+  MapCleaner cleaner(config);
   for (const Scan& scan : scans) cleaner.observe(scan);
   cleaner.estimateGround();
-  for (const Scan& scan : scans) cleaner.encode(scan);
+  if (cleaner.needsEncoding()) {
+    for (const Scan& scan : scans) cleaner.encode(scan);
+  }
   for (const Scan& scan : scans) cleaner.compare(scan);
   cleaner.segmentGround();
   for (const Scan& scan : scans) cleaner.measureFloors(scan);
@@ -123,6 +126,41 @@ TEST(OfflineCleaner, WritesThePointsAsTheCoreClassifiesThemInTheirOrder) {
     EXPECT_EQ(report.dynamic_points, idsOf(classes, PointClass::kDynamic).size());
     EXPECT_EQ(report.dropped_points.total(), idsOf(classes, PointClass::kDropped).size());
   }
+}
+
+TEST(OfflineCleaner, LevelledScansAreWrittenAsTheyWerePosed) {
+  std::vector<SourceScan> scans = test::sourceDrive(2);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const double height = i % 2 == 0 ? 0.1 : -0.1;
+    scans[i].T_map_cloud.translation().z() += height;
+    scans[i].T_map_sensor.translation().z() += height;
+  }
+  Config config;
+  config.matrix.res_g = 1.0;
+  config.matrix.room_res_g = 0.0;
+  config.levelling.min_correction = 0.0;
+  Config as_posed = config;
+  as_posed.levelling.enabled = false;
+  const std::vector<PointClass> classes = classesOf(scans, config);
+  ASSERT_NE(classes, classesOf(scans, as_posed)) << "no scan was levelled";
+  const OutputFolder levelled, unchanged;
+  MemorySource source(scans);
+  run(source, into(levelled), nullptr, config);
+  EXPECT_EQ(idsIn(levelled.file("cleaned.pcd")), idsOf(classes, PointClass::kStatic));
+  EXPECT_EQ(idsIn(levelled.file("dynamic.pcd")), idsOf(classes, PointClass::kDynamic));
+  source.rewind();
+  run(source, into(unchanged), nullptr, as_posed);
+  const auto heightsOf = [](const OutputFolder& folder) {
+    std::map<std::uint32_t, double> heights;
+    for (const char* file : {"cleaned.pcd", "dynamic.pcd"}) {
+      const pcl::PCLPointCloud2 cloud = readPcd(folder.file(file));
+      const FieldReader id(cloud, "id"), z(cloud, "z");
+      for (std::size_t i = 0; i < cloud.width; ++i)
+        heights[static_cast<std::uint32_t>(id(i))] = z(i);
+    }
+    return heights;
+  };
+  EXPECT_EQ(heightsOf(levelled), heightsOf(unchanged));
 }
 
 TEST(OfflineCleaner, PointsAreInTheMapFrameAndOtherFieldsBitExact) {
