@@ -17,6 +17,8 @@ constexpr double kColumnDeviation = 0.22;  // [m]
 // Columns that differ by more than this count less and less: wide at first, as far poses are wrong.
 constexpr float kFirstWidth = 0.4F, kLastWidth = 0.1F;  // [m]
 constexpr int kRounds = 8;
+// No pose should be so wrong near the sensor; farther columns that are lost so are not missed.
+constexpr float kStorey = 0.4F;                     // [m]
 constexpr std::size_t kFewest = 100, kMost = 1500;  // columns
 
 /// Columns and how far the map's level lies above the scan's lowest point there.
@@ -75,6 +77,10 @@ void addLevels(TileMap& map, ColumnIndex anchor, const std::vector<ColumnLow>& l
     Tile& tile = *tile_of(column);
     const auto i = static_cast<std::size_t>(TileMap::indexInTile(column));
     std::uint8_t& scans = tile.level_scans[i];
+    // Of several storeys the lowest one counts: a mean of two would be neither.
+    const bool is_other_storey = scans > 0 && std::abs(low.z - tile.level[i]) > kStorey;
+    if (is_other_storey && low.z > tile.level[i]) continue;
+    if (is_other_storey) scans = 0;
     if (scans < 255) ++scans;  // from then on a sliding mean
     tile.level[i] += (low.z - tile.level[i]) / static_cast<float>(scans);
   }

@@ -41,10 +41,10 @@ struct ScanView {
 ///                                                   -> segmentFloors()
 ///   classify(scan)     static or dynamic, per point
 ///
-/// Evidence needs compare() in the order of time. Otherwise any order will do within a phase (the
-/// height of the first scan's sensor is where z counts from, so another order may round points on a
-/// cell's border otherwise). What a phase computes without changing the map, place(), look() and
-/// classify(), is const and may run in threads beside the phase's other calls.
+/// Evidence needs observe() and compare() in the order of time. Otherwise any order will do within
+/// a phase (the height of the first scan's sensor is where z counts from, so another order may
+/// round points on a cell's border otherwise). What a phase computes without changing the map,
+/// place(), look() and classify(), is const and may run in threads beside the phase's other calls.
 ///
 /// Memory grows with the mapped area, not with the number of points.
 class MapCleaner {

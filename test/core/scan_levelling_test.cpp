@@ -122,6 +122,18 @@ TEST_F(ScanLevelling, LevelsAreMeansOfTheScansAsTheyWerePosed) {
   EXPECT_EQ(tile.level_scans[0], 2);
 }
 
+TEST_F(ScanLevelling, TheLowestStoreyIsAColumnsLevel) {
+  TileMap map(1);
+  const auto addHeight = [&](float z) { addLevels(map, {0, 0}, {{0, 0, z}}); };
+  const Tile& tile = map.tileAt({0, 0});
+  for (const float z : {2.0F, 2.2F, 5.0F}) addHeight(z);
+  EXPECT_FLOAT_EQ(tile.level[0], 2.1F);
+  EXPECT_EQ(tile.level_scans[0], 2);
+  for (const float z : {-1.0F, 2.0F, -1.2F}) addHeight(z);
+  EXPECT_FLOAT_EQ(tile.level[0], -1.1F);
+  EXPECT_EQ(tile.level_scans[0], 2);
+}
+
 TEST(ApplyLevelling, MovesPointsRunsAndSensorAlike) {
   const PlacedScan before = placed(look());
   PlacedScan after = before;
