@@ -55,12 +55,6 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
       placeScan(scan, z_origin, config_.matrix.res_g, config_.scan, dropped_, std::move(placed_));
   z_origin_ = z_origin;
   clock.lap("placing");
-  if (config_.levelling.enabled) {
-    const auto lows = lowestOfColumns(placed_, config_.levelling.radius);
-    addLevels(map_, placed_.anchor, lows);
-    level(lows, placed_);
-    clock.lap("levelling");
-  }
   addLowest();
   updateGround();
   clock.lap("coarse_ground");
@@ -76,11 +70,6 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
   classifyLive();
   clock.lap("classifying");
   return classes_;
-}
-
-void OnlineMap::level(const std::vector<ColumnLow>& lows, PlacedScan& scan) const {
-  applyLevelling(findLevelling(map_, scan.anchor, lows, config_.matrix.res_g, config_.levelling),
-                 scan);
 }
 
 void OnlineMap::addLowest() {
@@ -270,8 +259,7 @@ void OnlineMap::findDynamicInScan() {
 
 std::vector<PointClass> OnlineMap::classify(const Scan& scan) const {
   DroppedPoints dropped;
-  PlacedScan placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, dropped);
-  if (config_.levelling.enabled) level(lowestOfColumns(placed, config_.levelling.radius), placed);
+  const PlacedScan placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, dropped);
   std::vector<PointClass> classes;
   judgement_.classify(map_, placed, classes);
   return classes;

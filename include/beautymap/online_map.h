@@ -13,7 +13,6 @@
 #include "beautymap/map_cleaner.h"
 #include "beautymap/map_judgement.h"
 #include "beautymap/scan.h"
-#include "beautymap/scan_levelling.h"
 #include "beautymap/stage_times.h"
 #include "beautymap/tile_map.h"
 
@@ -63,7 +62,6 @@ class OnlineMap {
   void setZOrigin(double z_origin) { z_origin_ = z_origin; }
 
  private:
-  void level(const std::vector<ColumnLow>& lows, PlacedScan& scan) const;
   void addLowest();
   void updateGround();
   void estimateStaleGround(ColumnIndex index, Tile& tile);

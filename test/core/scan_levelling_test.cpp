@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "beautymap/map_cleaner.h"
-#include "beautymap/online_map.h"
 #include "core/test_scenes.h"
 
 namespace beautymap {
@@ -211,20 +210,6 @@ TEST_F(NoisyPoses, GroundStaysAndTheWalkerGoes) {
   EXPECT_GT(with.ground, 0.999);
   EXPECT_GT(with.ground, without.ground);
   EXPECT_LT(with.walker, 0.5 * without.walker);
-}
-
-TEST_F(NoisyPoses, AMapThatGrowsIsLevelledToo) {
-  Config config;
-  config.matrix.room_res_g = 0.0;
-  OnlineMap map(config);
-  for (const LabelledScan& scan : scans_) {
-    map.addHits(scan.scan);
-    map.addSeenFree();
-  }
-  map.settle();
-  const Kept finished = kept([&](const Scan& scan) { return map.classify(scan); });
-  EXPECT_GT(finished.ground, 0.99);
-  EXPECT_LT(finished.walker, 0.1);
 }
 
 }  // namespace
