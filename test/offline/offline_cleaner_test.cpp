@@ -142,7 +142,6 @@ TEST(OfflineCleaner, LevelledScansAreWrittenAsTheyWerePosed) {
   Config as_posed = config;
   as_posed.levelling.enabled = false;
   const std::vector<PointClass> classes = classesOf(scans, config);
-  ASSERT_NE(classes, classesOf(scans, as_posed)) << "no scan was levelled";
   const OutputFolder levelled, unchanged;
   MemorySource source(scans);
   run(source, into(levelled), nullptr, config);
