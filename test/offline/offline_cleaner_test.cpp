@@ -129,11 +129,18 @@ TEST(OfflineCleaner, WritesThePointsAsTheCoreClassifiesThemInTheirOrder) {
 }
 
 TEST(OfflineCleaner, LevelledScansAreWrittenAsTheyWerePosed) {
-  std::vector<SourceScan> scans = test::sourceDrive(2);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
+  std::vector<SourceScan> scans;
+  std::uint32_t first_id = 0;
+  for (int i = 0; i < 6; ++i) {
+    test::BoxWorld world;  // a wall, and somebody who walks by
+    world.boxes = {{{-20, 9, 0}, {20, 10, 3}},
+                   {{4.0, 0.6 * i - 2.0, 0}, {4.6, 0.6 * i - 1.4, 1.8}}};
+    const Scan scan = test::castScan(world, {0.2, 0.3, 1.7}, 32, -25.0, 10.0, 360).scan;
+    scans.push_back(test::sourceScan(scan, first_id, true));
+    first_id += scans.back().cloud.width;
     const double height = i % 2 == 0 ? 0.1 : -0.1;
-    scans[i].T_map_cloud.translation().z() += height;
-    scans[i].T_map_sensor.translation().z() += height;
+    scans.back().T_map_cloud.translation().z() += height;
+    scans.back().T_map_sensor.translation().z() += height;
   }
   Config config;
   config.matrix.res_g = 1.0;
@@ -142,6 +149,7 @@ TEST(OfflineCleaner, LevelledScansAreWrittenAsTheyWerePosed) {
   Config as_posed = config;
   as_posed.levelling.enabled = false;
   const std::vector<PointClass> classes = classesOf(scans, config);
+  ASSERT_NE(classes, classesOf(scans, as_posed)) << "no scan was levelled";
   const OutputFolder levelled, unchanged;
   MemorySource source(scans);
   run(source, into(levelled), nullptr, config);
