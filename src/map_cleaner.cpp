@@ -50,9 +50,7 @@ void MapCleaner::observe(ScanView& view) {
     // from.
     const auto lows = lowestOfColumns(view.placed, config_.levelling.radius);
     addLevels(map_, view.placed.anchor, lows);
-    applyLevelling(
-        findLevelling(map_, view.placed.anchor, lows, config_.matrix.res_g, config_.levelling),
-        view.placed);
+    level(view, lows);
     clock.lap("levelling");
   }
   forEachTileRun(map_, view.placed, [&](Tile* tile, std::size_t column, const ColumnRun& run) {
@@ -67,11 +65,14 @@ void MapCleaner::level(ScanView& view) const {
   view.levelling = {};
   if (!levels()) return;
   StageClock clock(view.times);
-  view.levelling = findLevelling(map_, view.placed.anchor,
-                                 lowestOfColumns(view.placed, config_.levelling.radius),
-                                 config_.matrix.res_g, config_.levelling);
-  applyLevelling(view.levelling, view.placed);
+  level(view, lowestOfColumns(view.placed, config_.levelling.radius));
   clock.lap("levelling");
+}
+
+void MapCleaner::level(ScanView& view, const std::vector<ColumnLow>& lows) const {
+  view.levelling =
+      findLevelling(map_, view.placed.anchor, lows, config_.matrix.res_g, config_.levelling);
+  applyLevelling(view.levelling, view.placed);
 }
 
 void MapCleaner::placeLevelled(const Scan& scan) {

@@ -22,7 +22,7 @@ namespace beautymap {
 struct ScanView {
   PlacedScan placed;
   DroppedPoints dropped;
-  Levelling levelling;  ///< how look() moved the placed scan
+  Levelling levelling;  ///< how the placed scan was moved
   MapWindow map;  ///< the map around the sensor; evidence has possible cells for occupied ones
   BitGrid hit;    ///< cells around the sensor that the scan hit
   /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
@@ -95,6 +95,7 @@ class MapCleaner {
   bool levels() const { return config_.evidence.enabled && config_.levelling.enabled; }
   /// Brings a placed scan's ground to that of all scans, see scan_levelling.h.
   void level(ScanView& view) const;
+  void level(ScanView& view, const std::vector<ColumnLow>& lows) const;
   void placeLevelled(const Scan& scan);
   /// When a tile's ground is known: the cells that can be judged by evidence.
   void findPossibleCells(Tile& tile) const;
