@@ -188,6 +188,9 @@ void OnlineMap::addSeenFree() {
   clock.lap("beam_visibility");
   for (const Half& half : halves_) addEvidence(half.seen_free, false);
   clock.lap("evidence");
+  // Nothing of a scan may wait for the next one: the tiles may be stored before.
+  updateGround();
+  clock.lap("coarse_ground");
 }
 
 void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
