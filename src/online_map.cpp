@@ -55,6 +55,12 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
       placeScan(scan, z_origin, config_.matrix.res_g, config_.scan, dropped_, std::move(placed_));
   z_origin_ = z_origin;
   clock.lap("placing");
+  if (config_.levelling.enabled) {
+    const auto lows = lowestOfColumns(placed_, config_.levelling.radius);
+    addLevels(map_, placed_.anchor, lows);
+    level(placed_, lows);
+    clock.lap("levelling");
+  }
   addLowest();
   updateGround();
   clock.lap("coarse_ground");
@@ -70,6 +76,11 @@ const std::vector<PointClass>& OnlineMap::addHits(const Scan& scan) {
   classifyLive();
   clock.lap("classifying");
   return classes_;
+}
+
+void OnlineMap::level(PlacedScan& placed, const std::vector<ColumnLow>& lows) const {
+  applyLevelling(findLevelling(map_, placed.anchor, lows, config_.matrix.res_g, config_.levelling),
+                 placed);
 }
 
 void OnlineMap::addLowest() {
@@ -262,7 +273,8 @@ void OnlineMap::findDynamicInScan() {
 
 std::vector<PointClass> OnlineMap::classify(const Scan& scan) const {
   DroppedPoints dropped;
-  const PlacedScan placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, dropped);
+  PlacedScan placed = placeScan(scan, zOrigin(), config_.matrix.res_g, config_.scan, dropped);
+  if (config_.levelling.enabled) level(placed, lowestOfColumns(placed, config_.levelling.radius));
   std::vector<PointClass> classes;
   judgement_.classify(map_, placed, classes);
   return classes;

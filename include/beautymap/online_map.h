@@ -13,6 +13,7 @@
 #include "beautymap/map_cleaner.h"
 #include "beautymap/map_judgement.h"
 #include "beautymap/scan.h"
+#include "beautymap/scan_levelling.h"
 #include "beautymap/stage_times.h"
 #include "beautymap/tile_map.h"
 
@@ -62,6 +63,8 @@ class OnlineMap {
   void setZOrigin(double z_origin) { z_origin_ = z_origin; }
 
  private:
+  /// Brings a placed scan's ground to that of the scans before it, see scan_levelling.h.
+  void level(PlacedScan& placed, const std::vector<ColumnLow>& lows) const;
   void addLowest();
   void updateGround();
   void estimateStaleGround(ColumnIndex index, Tile& tile);

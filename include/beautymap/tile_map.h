@@ -46,8 +46,10 @@ struct Tile {
 
   int fineBins() const { return static_cast<int>(fine_counts.size()) / kColumns; }
 
-  std::array<float, kColumns> lowest;  ///< lowest point; kNoHeight: no point
-  std::array<float, kColumns> ground;  ///< bottom of bit 0: coarse ground g_ij, less bits_below
+  std::array<float, kColumns> lowest;   ///< lowest point; kNoHeight: no point
+  std::array<float, kColumns> ground;   ///< bottom of bit 0: coarse ground g_ij, less bits_below
+  std::array<float, kColumns> level{};  ///< mean of scans' lowest points
+  std::array<std::uint8_t, kColumns> level_scans{};   ///< of how many, up to 255
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
   std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
@@ -62,9 +64,7 @@ struct Tile {
   SparseColumns<FloorCell, kColumns> floors;         ///< of columns that have one
 
   // Of maps of which all points are known before they are judged (MapCleaner).
-  std::array<float, kColumns> level{};               ///< mean of scans' lowest points
-  std::array<std::uint8_t, kColumns> level_scans{};  ///< of how many, up to 255
-  std::array<float, kColumns> highest;               ///< highest point; -kNoHeight: no point
+  std::array<float, kColumns> highest;    ///< highest point; -kNoHeight: no point
   std::array<Bits, kColumns> possible{};  ///< cells that can be judged; HeightBins of all points
                                           ///< until the ground is known
   std::bitset<kColumns> flat;  ///< columns of which all points lie in the ground cell: all stay

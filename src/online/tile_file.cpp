@@ -16,7 +16,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 3\n";
+constexpr char kMagic[] = "beautymap tiles 4\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -46,6 +46,8 @@ template <typename TileType, typename F>
 void forEachArray(TileType& tile, F f) {
   f(tile.lowest.data(), sizeof(tile.lowest));
   f(tile.ground.data(), sizeof(tile.ground));
+  f(tile.level.data(), sizeof(tile.level));
+  f(tile.level_scans.data(), sizeof(tile.level_scans));
   f(tile.below_ground.data(), sizeof(tile.below_ground));
   f(tile.occupied.data(), sizeof(tile.occupied));
   f(tile.suspected.data(), sizeof(tile.suspected));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "beautymap/map_cleaner.h"
+#include "beautymap/online_map.h"
 #include "core/test_scenes.h"
 
 namespace beautymap {
@@ -202,6 +203,18 @@ class NoisyPoses : public testing::Test {
     return kept([&](const Scan& scan) { return cleaner.classify(scan); });
   }
 
+  Kept online(bool levelling) const {
+    Config config;
+    config.levelling.enabled = levelling;
+    OnlineMap map(config);
+    for (const LabelledScan& scan : scans_) {
+      map.addHits(scan.scan);
+      map.addSeenFree();
+    }
+    map.settle();
+    return kept([&](const Scan& scan) { return map.classify(scan); });
+  }
+
   std::vector<LabelledScan> scans_;
 };
 
@@ -210,6 +223,13 @@ TEST_F(NoisyPoses, GroundStaysAndTheWalkerGoes) {
   EXPECT_GT(with.ground, 0.999);
   EXPECT_GT(with.ground, without.ground);
   EXPECT_LT(with.walker, 0.5 * without.walker);
+}
+
+TEST_F(NoisyPoses, OnlineToo) {
+  const Kept with = online(true), without = online(false);
+  EXPECT_GT(with.ground, 0.99);
+  EXPECT_GT(with.ground, without.ground);
+  EXPECT_LT(with.walker, without.walker);
 }
 
 }  // namespace
