@@ -34,6 +34,15 @@ void checkSignature(const std::string& path) {
   throw InputError(path + ": is not a ROS bag (it does not begin with #ROSBAG)");
 }
 
+/// By its first chunk: rosbag does not tell.
+bool isBz2(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  // The record that precedes the first chunk is padded to 4096 bytes.
+  std::string start(8192, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start.find("compression=bz2") != std::string::npos;
+}
+
 std::unique_ptr<rosbag::Bag> openBag(const std::string& path) {
   checkSignature(path);
   const std::string cure =
@@ -56,7 +65,10 @@ std::unique_ptr<rosbag::Bag> openBag(const std::string& path) {
 }  // namespace
 
 RosbagFiles::RosbagFiles(const std::vector<std::string>& paths) : paths_(paths) {
-  for (const std::string& path : paths) bags_.push_back(openBag(path));
+  for (const std::string& path : paths) {
+    bags_.push_back(openBag(path));
+    bz2_ = bz2_ || isBz2(path);
+  }
   try {
     listTopics();
   } catch (const rosbag::BagException& error) {

@@ -30,6 +30,8 @@ class RosbagFiles {
   /// Record times of the first and the last message of all.
   ros::Time begin() const { return begin_; }
   ros::Time end() const { return end_; }
+  /// Whether any of them is compressed so, which takes long to read.
+  bool areBz2() const { return bz2_; }
 
   /// The messages of the connections that `query` wants, by record time, merged over the bags.
   std::unique_ptr<rosbag::View> view(const Query& query, const ros::Time& begin = ros::TIME_MIN,
@@ -43,6 +45,7 @@ class RosbagFiles {
   std::vector<Topic> topics_;
   ros::Time begin_;
   ros::Time end_;
+  bool bz2_ = false;
 };
 
 }  // namespace beautymap

@@ -224,9 +224,10 @@ RosbagSource::RosbagSource(const std::vector<std::string>& paths, const SourceOp
       cloud_frame_(firstFrame<sensor_msgs::PointCloud2>(files_, topic_)),
       poses_(loadPoses(options)) {
   const Window window = chooseWindow(files_, options);
-  view_ = files_.view(messagesOf(topic_), window.begin, window.end);
-  at_ = view_->begin();
-  describeFirstScan();
+  const auto view = files_.view(messagesOf(topic_), window.begin, window.end);
+  size_ = (view->size() + stride_ - 1) / stride_;
+  describeFirstScan(*view);
+  clouds_.emplace(files_, messagesOf(topic_), window.begin, window.end, stride_);
 }
 
 std::unique_ptr<ScanPoses> RosbagSource::loadPoses(const SourceOptions& options) const {
@@ -255,7 +256,7 @@ std::unique_ptr<ScanPoses> RosbagSource::loadPoses(const SourceOptions& options)
   return posesFromTf(std::move(tf), options, cloud_frame_);
 }
 
-void RosbagSource::describeFirstScan() {
+void RosbagSource::describeFirstScan(rosbag::View& view) {
   char length[64];
   std::snprintf(length, sizeof(length), "%.1f s", (files_.end() - files_.begin()).toSec());
   description_ = {"bags: " + join(files_.paths()) + " (" + length + ")"};
@@ -263,38 +264,32 @@ void RosbagSource::describeFirstScan() {
   bool found = false;
   // Poses often begin some scans after the clouds; there is no need to search the whole recording.
   constexpr std::size_t kTries = 20;
-  while (!found && at_ != view_->end() && position_ / stride_ < kTries) {
-    found = position_ % stride_ == 0 && read(*at_, scan);
-    ++at_;
-    ++position_;
+  std::size_t position = 0;
+  for (auto at = view.begin(); !found && at != view.end() && position / stride_ < kTries; ++at) {
+    found = position++ % stride_ == 0 && use(readCloud(*at), scan);
   }
   description_.push_back("clouds: " + topic_.name + ", " + std::to_string(size()) +
                          " scans, frame '" + cloud_frame_ + "'" +
                          (found ? ", fields " + fieldNames(scan.cloud) : ""));
   for (const std::string& line : poses_->describe()) description_.push_back(line);
   if (found) description_.push_back("first pose: " + describePose(scan.T_map_sensor));
-  rewind();
+  skipped_.clear();
 }
 
-bool RosbagSource::read(const rosbag::MessageInstance& message, SourceScan& scan) {
-  boost::shared_ptr<sensor_msgs::PointCloud2> cloud;
-  try {
-    cloud = message.instantiate<sensor_msgs::PointCloud2>();
-  } catch (const std::exception& error) {
-    skip("unreadable message", "recorded at " + inSeconds(message.getTime().toNSec()) + ": " +
-                                   error.what() + " (the bag may be damaged)");
-    return false;
-  }
+bool RosbagSource::use(const RecordedCloud& recorded, SourceScan& scan) {
+  const std::string when = "recorded at " + inSeconds(recorded.recorded.toNSec()) + ": ";
+  const auto& cloud = recorded.cloud;
   if (cloud == nullptr) {
-    skip("unreadable message", "not the sensor_msgs/PointCloud2 that this program knows");
+    skip("unreadable message", recorded.error.empty()
+                                   ? "not the sensor_msgs/PointCloud2 that this program knows"
+                                   : when + recorded.error + " (the bag may be damaged)");
     return false;
   }
   scan.stamp_ns = cloud->header.stamp.toNSec();
   const std::string frame = stripSlash(cloud->header.frame_id);
   const std::string which = "scan at " + inSeconds(scan.stamp_ns) + ": ";
   if (scan.stamp_ns == 0) {
-    skip("stamp 0", "recorded at " + inSeconds(message.getTime().toNSec()) +
-                        ": header.stamp is 0, so its pose is unknown");
+    skip("stamp 0", when + "header.stamp is 0, so its pose is unknown");
     return false;
   }
   if (cloud->width == 0 || cloud->height == 0) {
@@ -314,21 +309,18 @@ bool RosbagSource::read(const rosbag::MessageInstance& message, SourceScan& scan
 }
 
 bool RosbagSource::next(SourceScan& scan) {
-  bool found = false;
-  while (!found && at_ != view_->end()) {
-    found = position_ % stride_ == 0 && read(*at_, scan);
-    ++at_;
-    ++position_;
+  RecordedCloud recorded;
+  while (clouds_->next(recorded)) {
+    if (use(recorded, scan)) return true;
   }
-  return found;
+  return false;
 }
 
 void RosbagSource::rewind() {
-  at_ = view_->begin();
-  position_ = 0;
+  clouds_->rewind();
   skipped_.clear();
 }
 
-std::size_t RosbagSource::size() const { return (view_->size() + stride_ - 1) / stride_; }
+std::size_t RosbagSource::size() const { return size_; }
 
 }  // namespace beautymap

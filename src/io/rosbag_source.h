@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <rosbag/view.h>
-
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "beautymap/io/scan_source.h"
+#include "cloud_read_ahead.h"
 #include "rosbag_files.h"
 #include "scan_poses.h"
 
@@ -28,18 +28,18 @@ class RosbagSource : public ScanSource {
 
  private:
   std::unique_ptr<ScanPoses> loadPoses(const SourceOptions& options) const;
-  bool read(const rosbag::MessageInstance& message, SourceScan& scan);
-  void describeFirstScan();
+  /// The scan of a cloud that can be used; the others are skipped.
+  bool use(const RecordedCloud& recorded, SourceScan& scan);
+  void describeFirstScan(rosbag::View& view);
 
   RosbagFiles files_;
   RosbagFiles::Topic topic_;
   std::size_t stride_;
   std::string cloud_frame_;  // of the first cloud
   std::unique_ptr<ScanPoses> poses_;
-  std::unique_ptr<rosbag::View> view_;
-  rosbag::View::iterator at_;
-  std::size_t position_ = 0;
+  std::size_t size_ = 0;
   std::vector<std::string> description_;
+  std::optional<CloudReadAhead> clouds_;
 };
 
 }  // namespace beautymap

@@ -48,6 +48,38 @@ TEST_F(RosbagSource, GivesTheSameSequenceAfterRewind) {
   EXPECT_EQ(source->skipped().begin()->second.count, 1U);
 }
 
+TEST_F(RosbagSource, KeepsTheOrderOfCompressedCloudsThatThreadsReadAhead) {
+  constexpr int kScans = 101;
+  {
+    BagWriter bag(bag_, rosbag::compression::BZ2);
+    writeDrive(bag, 10.0, kScans);
+  }
+  const auto stampsOf = [](ScanSource& source) {
+    std::vector<std::uint64_t> stamps;
+    for (const SourceScan& scan : readAll(source)) stamps.push_back(scan.stamp_ns);
+    return stamps;
+  };
+  for (const int stride : {1, 3}) {
+    options_.stride = stride;
+    const auto source = open();
+    const std::vector<std::uint64_t> stamps = stampsOf(*source);
+    ASSERT_EQ(stamps.size(), static_cast<std::size_t>((kScans + stride - 1) / stride));
+    EXPECT_EQ(stamps.size(), source->size());
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      EXPECT_NEAR(static_cast<double>(stamps[i]), 10e9 + 1e8 * stride * static_cast<double>(i),
+                  1e3);
+    }
+    SourceScan scan;
+    EXPECT_FALSE(source->next(scan)) << "the end stays the end";
+    for (const int read : {1, 7}) {
+      source->rewind();
+      for (int i = 0; i < read; ++i) ASSERT_TRUE(source->next(scan));
+      source->rewind();
+      EXPECT_EQ(stampsOf(*source), stamps) << "rewound while threads read";
+    }
+  }
+}
+
 TEST_F(RosbagSource, CountsUnusableCloudsByReason) {
   {
     BagWriter bag(bag_);
