@@ -20,6 +20,11 @@ constexpr int kRounds = 8;
 // No pose should be so wrong near the sensor; farther columns that are lost so are not missed.
 constexpr float kStorey = 0.4F;                     // [m]
 constexpr std::size_t kFewest = 100, kMost = 1500;  // columns
+// The mean of fewer, of which this scan is one, says little where beams are sparse.
+constexpr int kFewestScans = 5;
+// A pose that was wrong leaves a fraction of the differences (0.2 to 0.45); what is fitted to
+// sparse beams on rough ground leaves most of them.
+constexpr float kMostLeft = 0.7F;
 
 /// Columns and how far the map's level lies above the scan's lowest point there.
 struct Differences {
@@ -36,8 +41,7 @@ Differences differencesTo(const TileMap& map, ColumnIndex anchor,
     const Tile* tile = tile_of(column);
     if (tile == nullptr) continue;
     const auto i = static_cast<std::size_t>(TileMap::indexInTile(column));
-    // What only one scan saw agrees with itself.
-    if (tile->level_scans[i] < 2) continue;
+    if (tile->level_scans[i] < kFewestScans) continue;
     known.emplace_back(low.x, low.y, tile->level[i] - low.z);
   }
   const std::size_t step = 1 + known.size() / kMost;
@@ -49,6 +53,13 @@ Differences differencesTo(const TileMap& map, ColumnIndex anchor,
     differences.height[i] = column.z();
   }
   return differences;
+}
+
+float medianSize(const Eigen::ArrayXf& values) {
+  Eigen::ArrayXf sizes = values.abs();
+  float* const middle = sizes.data() + sizes.size() / 2;
+  std::nth_element(sizes.data(), middle, sizes.data() + sizes.size());
+  return *middle;
 }
 
 }  // namespace
@@ -107,8 +118,12 @@ Levelling findLevelling(const TileMap& map, ColumnIndex anchor, const std::vecto
     plane = normal.ldlt().solve((weighted.transpose() * seen.height.matrix()).cast<double>());
   }
   const Eigen::Vector3f found = plane.cast<float>();
-  const double mean_square = (seen.plane * found).squaredNorm() / seen.height.size();
-  if (!(mean_square >= square(config.min_correction))) return {};
+  const Eigen::ArrayXf moved = (seen.plane * found).array();
+  const bool is_small = !(moved.matrix().norm() >=
+                          config.min_correction * std::sqrt(static_cast<double>(moved.size())));
+  if (is_small || !(medianSize(seen.height - moved) < kMostLeft * medianSize(seen.height))) {
+    return {};
+  }
   return {found[0], found[1], found[2]};
 }
 

@@ -42,8 +42,8 @@ void addLevels(TileMap& map, ColumnIndex anchor, const std::vector<ColumnLow>& l
 /// The levelling that brings a scan's lowest heights to the map's, to which they were added.
 /// Columns that disagree with most others (something stands there now, another storey) do not
 /// count.
-/// @return  none where too few columns were seen by several scans, or where the heights would
-///          change by less than levelling.min_correction
+/// @return  none where too few columns were seen by several scans, where the heights would change
+///          by less than levelling.min_correction, or where they would still disagree
 Levelling findLevelling(const TileMap& map, ColumnIndex anchor, const std::vector<ColumnLow>& lows,
                         double res_g, const LevellingConfig& config);
 

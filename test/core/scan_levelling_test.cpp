@@ -110,6 +110,30 @@ TEST_F(ScanLevelling, WithoutCommonGroundAScanStays) {
   EXPECT_LT(std::abs(find(upstairs).height), 0.1);
 }
 
+TEST_F(ScanLevelling, RoughGroundThatAPlaneDoesNotExplainStays) {
+  test::Random random(5);
+  const auto lows = [&](double raised, double roughness) {
+    std::vector<ColumnLow> columns;
+    for (int x = -15; x < 15; ++x) {
+      for (int y = -15; y < 15; ++y) {
+        const double z = raised + random.uniform(-roughness, roughness);
+        columns.push_back({x, y, static_cast<float>(z)});
+      }
+    }
+    return columns;
+  };
+  for (const double roughness : {0.05, 0.3}) {
+    TileMap map(1);
+    for (int i = 0; i < 20; ++i) addLevels(map, {0, 0}, lows(0.0, roughness));
+    const Levelling found = findLevelling(map, {0, 0}, lows(0.08, roughness), kCell, {});
+    if (roughness < 0.1) {
+      EXPECT_NEAR(found.height, -0.08, 0.01);
+    } else {
+      EXPECT_TRUE(found.isNone());
+    }
+  }
+}
+
 TEST_F(ScanLevelling, LevelsAreMeansOfTheScansAsTheyWerePosed) {
   TileMap map(1);
   const Scan scan = test::registeredScan({{0.1, 0.1, 0.5}, {0.2, 0.2, 0.9}}, {0.0, 0.0, 1.5});
