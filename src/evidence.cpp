@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/evidence.h"
 
+#include <algorithm>
+
 namespace beautymap {
 
 void ColumnEvidence::observe(Bits hit, Bits seen_free) {
@@ -12,6 +14,7 @@ void ColumnEvidence::observe(Bits hit, Bits seen_free) {
     const Bits ended = hit & after_.any();
     if (ended != 0) {
       between_.add(after_, ended);
+      gaps_.increment(ended);
       after_.clear(ended);
     }
   }
@@ -30,6 +33,8 @@ void ColumnEvidence::append(const ColumnEvidence& later) {
   const Bits ended = hit & hit_later;
   between_.add(after_, ended);
   between_.add(later.between_, hit_later);
+  gaps_.increment(after_.any() & ended);
+  gaps_.add(later.gaps_, hit_later);
   after_.assign(later.after_, hit_later);
   hits_.add(later.hits_, ~Bits{0});
 }
@@ -39,6 +44,15 @@ void ColumnEvidence::shift(int bits, Bits mask) {
   before_.shift(bits, mask);
   between_.shift(bits, mask);
   after_.shift(bits, mask);
+  gaps_.shift(bits, mask);
+}
+
+bool ColumnEvidence::flickers(int bit, const EvidenceConfig& config) const {
+  const int gap_count = gaps(bit);
+  if (config.flicker_gaps == 0 || gap_count < config.flicker_gaps) return false;
+  const double gap = freeBetween(bit) / static_cast<double>(gap_count);
+  return gap <= config.flicker_length &&
+         std::max(freeBefore(bit), freeAfter(bit)) <= config.flicker_order * gap;
 }
 
 bool ColumnEvidence::isStrong(int bit, const EvidenceConfig& config) const {
@@ -51,6 +65,7 @@ bool ColumnEvidence::isLeaning(int bit, const EvidenceConfig& config) const {
 }
 
 bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {
+  if (flickers(bit, config)) return false;
   const int hit = hits(bit);
   const int before = freeBefore(bit);
   const int after = freeAfter(bit);

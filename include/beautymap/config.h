@@ -195,6 +195,9 @@ struct EvidenceConfig {
   double strong_ratio = 1.0;
   double leaning_ratio = 0.03;
   int unknown_hits = 12;
+  int flicker_gaps = 2;
+  int flicker_length = 4;
+  double flicker_order = 16.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -214,6 +217,14 @@ struct EvidenceConfig {
       "hits");
     v("unknown_hits", unknown_hits, 0, 1023, "scans",
       "a cell that was never seen free is unknown when no more scans hit it");
+    v("flicker_gaps", flicker_gaps, 0, 1023, "gaps",
+      "a cell flickers, as edges do, when it was seen free between its hits in at least as many "
+      "stretches: it is dynamic only if its neighbours say so; 0: never");
+    v("flicker_length", flicker_length, 0, 1023, "scans",
+      "and these are on average no longer than that");
+    v("flicker_order", flicker_order, 0.0, 1000.0, "",
+      "and it was not seen free before its first or after its last hit for more than this times "
+      "their length");
   }
 };
 

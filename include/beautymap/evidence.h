@@ -94,7 +94,7 @@ class BitCounters {
 /// What scans in the order of time say about the cells of one column: in how many each was hit, and
 /// in how many it was seen free before the first hit, between hits, and after the last one. Order
 /// is information: what is free before or after a stretch of hits came and went, frees between hits
-/// are noise at an edge.
+/// are noise at an edge when they come in many short gaps.
 class ColumnEvidence {
  public:
   /// One scan: cells it hit and cells it saw free. A cell in neither was not seen.
@@ -116,10 +116,15 @@ class ColumnEvidence {
   int freeBefore(int bit) const { return before_.count(bit); }
   int freeBetween(int bit) const { return between_.count(bit); }
   int freeAfter(int bit) const { return after_.count(bit); }
+  /// In how many stretches the frees between hits came.
+  int gaps(int bit) const { return gaps_.count(bit); }
 
   /// Whether the cell is dynamic: seen free often enough for its hits, or often enough before the
   /// first or after the last.
   bool isDynamic(int bit, const EvidenceConfig& config) const;
+  /// Whether the cell changes between hit and free as an edge of something that stays does: it is
+  /// no dynamic cell by itself then.
+  bool flickers(int bit, const EvidenceConfig& config) const;
   /// Whether it was seen free, in the order of something that came or went, so much more often than
   /// hit that few neighbours need to agree.
   bool isStrong(int bit, const EvidenceConfig& config) const;
@@ -133,6 +138,7 @@ class ColumnEvidence {
   BitCounters<8> before_;
   BitCounters<10> between_;
   BitCounters<8> after_;
+  BitCounters<10> gaps_;
 };
 
 }  // namespace beautymap

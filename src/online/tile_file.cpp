@@ -16,7 +16,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 4\n";
+constexpr char kMagic[] = "beautymap tiles 5\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 

@@ -70,7 +70,8 @@ std::string valueOf(const Config& config, const std::string& name) {
 
 bool isBool(const ParameterInfo& p) { return p.min == "false"; }
 bool isInteger(const ParameterInfo& p) {
-  return p.unit == "bits" || p.unit == "columns" || p.unit == "beams" || p.unit == "scans";
+  return p.unit == "bits" || p.unit == "columns" || p.unit == "beams" || p.unit == "scans" ||
+         p.unit == "gaps";
 }
 
 void expectEqual(const Config& a, const Config& b) {

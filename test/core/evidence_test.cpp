@@ -20,6 +20,7 @@ using test::Random;
 constexpr int kMaxHits = 1023;
 constexpr int kMaxStretch = 255;
 constexpr int kMaxBetween = 1023;
+constexpr int kMaxGaps = 1023;
 
 bool isSet(Bits bits, int bit) { return (bits >> bit & 1) != 0; }
 
@@ -204,6 +205,7 @@ struct Counts {
   int before = 0;
   int between = 0;
   int after = 0;
+  int gaps = 0;
 };
 
 /// From the plain list of a cell's events.
@@ -224,12 +226,16 @@ Counts countsOf(const std::vector<Events>& scans, int bit) {
       continue;
     }
     if (hits_so_far == 0) counts.before = std::min(kMaxStretch, stretch);
-    if (hits_so_far > 0) counts.between += std::min(kMaxStretch, stretch);
+    if (hits_so_far > 0) {
+      counts.between += std::min(kMaxStretch, stretch);
+      counts.gaps += stretch > 0;
+    }
     ++hits_so_far;
     stretch = 0;
   }
   (hits_so_far == 0 ? counts.before : counts.after) = std::min(kMaxStretch, stretch);
   counts.between = std::min(kMaxBetween, counts.between);
+  counts.gaps = std::min(kMaxGaps, counts.gaps);
   return counts;
 }
 
@@ -240,6 +246,7 @@ void expectCounts(const ColumnEvidence& evidence, const std::vector<Events>& sca
     ASSERT_EQ(evidence.freeBefore(bit), expected.before) << "bit " << bit;
     ASSERT_EQ(evidence.freeBetween(bit), expected.between) << "bit " << bit;
     ASSERT_EQ(evidence.freeAfter(bit), expected.after) << "bit " << bit;
+    ASSERT_EQ(evidence.gaps(bit), expected.gaps) << "bit " << bit;
     ASSERT_EQ(isSet(evidence.everFree(), bit),
               expected.before + expected.between + expected.after > 0)
         << "bit " << bit;
@@ -397,6 +404,41 @@ TEST(EvidenceRules, FreesBeforeAndAfterCountTogetherOnlyForTheRatio) {
   EXPECT_TRUE(isDynamic({{kFree, 4}, {kHit, 7}, {kFree, 4}}));
 }
 
+/// A story that is told so many times.
+std::vector<Stretch> repeated(const std::vector<Stretch>& story, int times) {
+  std::vector<Stretch> all;
+  for (int i = 0; i < times; ++i) all.insert(all.end(), story.begin(), story.end());
+  return all;
+}
+
+TEST(EvidenceRules, AnEdgeThatFlickersIsNotDynamicByItself) {
+  // Two beams a scan pass the edge of a wall: hit and free take turns.
+  const std::vector<Stretch> edge = repeated({{kFree, 3}, {kHit, 2}}, 10);
+  EXPECT_FALSE(isDynamic(edge));
+  EXPECT_TRUE(evidenceOf(edge).isLeaning(kCell, {}));  // its neighbours may say so
+  EvidenceConfig never;
+  never.flicker_gaps = 0;
+  EXPECT_TRUE(isDynamic(edge, never));
+  EXPECT_FALSE(isDynamic(repeated(edge, 100)));  // counters are full
+}
+
+TEST(EvidenceRules, OneGapIsNoFlicker) {
+  EXPECT_TRUE(isDynamic({{kFree, 5}, {kHit, 2}, {kFree, 1}, {kHit, 2}, {kFree, 5}}));
+}
+
+TEST(EvidenceRules, PeopleWhoPassOneAfterTheOtherDoNotFlicker) {
+  EXPECT_TRUE(isDynamic(repeated({{kHit, 6}, {kFree, 14}}, 5)));
+}
+
+TEST(EvidenceRules, WhatFlickeredUntilItDroveAwayIsDynamic) {
+  std::vector<Stretch> story = repeated({{kHit, 3}, {kFree, 1}}, 10);
+  story.push_back({kHit, 1});
+  story.push_back({kFree, 16});
+  EXPECT_FALSE(isDynamic(story));
+  story.push_back({kFree, 1});
+  EXPECT_TRUE(isDynamic(story));
+}
+
 TEST(EvidenceRules, FullHitsAreNeverOutvotedByTheRatio) {
   EvidenceConfig config;
   config.order_ratio = 100.0;
@@ -448,7 +490,7 @@ TEST(EvidenceRules, LeaningIsSeenFreeBeforeOrAfterButOnceInManyHits) {
 }
 
 TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
-  int dynamic = 0, strong = 0;
+  int dynamic = 0, strong = 0, flickering = 0;
   for (std::uint32_t seed = 0; seed < 150; ++seed) {
     Random random(seed);
     EvidenceConfig config;
@@ -458,6 +500,9 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
     config.order_ratio = random.uniform(0.0, 1.0);
     config.strong_ratio = random.uniform(0.0, 4.0);
     config.leaning_ratio = random.uniform(0.0, 0.5);
+    config.flicker_gaps = random.integer(0, 4);
+    config.flicker_length = random.integer(0, 20);
+    config.flicker_order = random.uniform(0.0, 10.0);
     const std::vector<Events> scans = randomEvents(random, random.pick<int>({5, 40, 1500}));
     const ColumnEvidence evidence = observed(scans);
     for (int bit = 0; bit < kMaxBits; ++bit) {
@@ -470,18 +515,25 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
       };
       // What was free before more hits than can be counted has become static.
       const bool by_order = (c.hits < kMaxHits && decides(c.before)) || decides(c.after);
-      ASSERT_EQ(evidence.isDynamic(bit, config), by_ratio || by_order) << "seed " << seed;
+      const double gap = c.gaps == 0 ? 0.0 : static_cast<double>(c.between) / c.gaps;
+      const bool flickers = config.flicker_gaps > 0 && c.gaps >= config.flicker_gaps &&
+                            gap <= config.flicker_length &&
+                            std::max(c.before, c.after) <= config.flicker_order * gap;
+      const bool is_dynamic = (by_ratio || by_order) && !flickers;
+      ASSERT_EQ(evidence.isDynamic(bit, config), is_dynamic) << "seed " << seed;
+      flickering += (by_ratio || by_order) && flickers;
       const int in_order = c.before + c.after;
       ASSERT_EQ(evidence.isStrong(bit, config), in_order > config.strong_ratio * c.hits);
       const bool leans = in_order > 0 && in_order >= config.leaning_ratio * c.hits;
       ASSERT_EQ(evidence.isLeaning(bit, config), leans);
-      dynamic += by_ratio || by_order;
+      dynamic += is_dynamic;
       strong += in_order > config.strong_ratio * c.hits;
     }
   }
   EXPECT_GT(dynamic, 500);
   EXPECT_LT(dynamic, 9000);
   EXPECT_GT(strong, 500);
+  EXPECT_GT(flickering, 200);
 }
 
 }  // namespace
