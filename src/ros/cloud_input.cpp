@@ -28,7 +28,9 @@ CloudInput::CloudInput(const ros::NodeHandle& nh, const NodeOptions& options, Li
       options_(options),
       listener_(std::move(listener)),
       buffer_(kTfMemory),
-      tf_listener_(buffer_),
+      // Transforms come in the clouds' thread. With one of their own, a cloud that the filter is
+      // just about to keep misses its transform and stays in the filter for ever.
+      tf_listener_(buffer_, nh_, false),
       last_stamp_(options.cloud_topics.size()),
       now_(ros::Time::now()) {
   const auto queue_size = static_cast<std::uint32_t>(options_.queue_size);

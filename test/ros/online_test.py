@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The node and the nodelet as a user runs them: a real roscore, real processes, `rosbag play --clock`."""
 import contextlib
+import copy
+import math
 import os
 import pathlib
 import re
@@ -26,6 +28,7 @@ from beautymap.srv import LoadMap, SaveMap
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import OccupancyGrid, Path
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from std_srvs.srv import Empty
@@ -45,7 +48,7 @@ def wait_for(condition, what, timeout=30.0):
         if value:
             return value
         time.sleep(0.05)
-    raise AssertionError(f"not within {timeout} s: {what}")
+    raise AssertionError(f"not within {timeout} s: {what() if callable(what) else what}")
 
 
 def labels_of(folder_or_stem):
@@ -113,14 +116,16 @@ class Node:
     def wait_until_connected(self):
         wait_for(lambda: self.subscribers[0].get_num_connections() > 0 and
                  self.subscribers[3].get_num_connections() > 0 and
-                 self.subscribers[4].get_num_connections() > 0, "the node: " + self.output())
+                 self.subscribers[4].get_num_connections() > 0,
+                 lambda: "the node: " + self.output())
 
     def output(self):
         return pathlib.Path(self.log.name).read_text()
 
     def wait_for_scans(self, count, timeout=180.0):
         wait_for(lambda: self.reports and self.reports[-1].scans >= count,
-                 f"{count} scans; {len(self.reports)} reports, {self.output()[-2000:]}", timeout)
+                 lambda: f"{count} scans; {len(self.reports)} reports, the last: "
+                 f"{self.reports[-1:]}, {self.output()[-2000:]}", timeout)
         return self.reports[-1]
 
     def call(self, service, kind, **request):
@@ -148,12 +153,43 @@ def running(parameters=None, nodelet=False, launch=None, prepare=None):
         yield node
     finally:
         node.stop()
+        Player.stop()
         node.log.close()
 
 
-def play(bag, *arguments, rate=2.0):
-    subprocess.run(["rosbag", "play", "--clock", "-q", "-r", str(rate), "-d", "0.7", *arguments,
-                    str(bag)], check=True, timeout=300, stdout=subprocess.DEVNULL)
+class Player:
+    """`rosbag play`, which on a busy machine must lose nothing: it begins when its messages have
+    subscribers, and lives on at the end, as what a subscriber has not read yet goes with it."""
+
+    process = None
+
+    @classmethod
+    def play(cls, bag, rate=2.0, duration=math.inf):
+        """Returns when all is published."""
+        cls.stop()
+        with rosbag.Bag(str(bag)) as messages:
+            end = min(messages.get_end_time(), messages.get_start_time() + duration)
+            topics = messages.get_type_and_topic_info().topics
+        _, subscribers, _ = rosgraph.Master("/online_test").getSystemState()
+        heard = [topic for topic, nodes in subscribers if topic in topics and NODE in nodes]
+        clock = []
+        subscriber = rospy.Subscriber("/clock", Clock, lambda now: clock.append(now.clock.to_sec()))
+        cls.process = subprocess.Popen(
+            ["rosbag", "play", "--clock", "-q", "-k", "--wait-for-subscribers", "-r", str(rate),
+             *(["-u", str(duration)] if duration < math.inf else []), f"--bags={bag}",
+             "--topics", *heard], stdout=subprocess.DEVNULL)
+        wait_for(lambda: clock and clock[-1] > end - 0.1, f"the end of {bag}", timeout=300)
+        subscriber.unregister()
+
+    @classmethod
+    def stop(cls):
+        if cls.process:
+            cls.process.terminate()
+            cls.process.wait()
+            cls.process = None
+
+
+play = Player.play
 
 
 class Online(unittest.TestCase):
@@ -249,6 +285,14 @@ class Online(unittest.TestCase):
     def test_the_nodelet_does_the_same(self):
         with running(self.parameters(), nodelet=True) as node:
             self.check_run(node)
+
+    @staticmethod
+    def restamped(message, time):
+        """A copy of a cloud or of transforms with another stamp."""
+        message = copy.deepcopy(message)
+        for part in getattr(message, "transforms", [message]):
+            part.header.stamp = time
+        return message
 
     def test_odometry_gives_the_poses(self):
         bag = self.rewrite("odometry.bag", lambda topic, message, t:
@@ -432,6 +476,25 @@ class Online(unittest.TestCase):
             self.assertEqual((report.scans, report.skipped_scans), (SCANS - 2, 3))
             self.assertGreater(max(r.dropped_points for r in node.reports), 1000)
 
+    def test_no_cloud_is_lost_that_comes_at_the_same_moment_as_its_pose(self):
+        copies = 50
+
+        def multiply(topic, message, t):
+            if topic == "/cloud":
+                # So few points that the rate is high.
+                message.data = message.data[:100 * message.point_step]
+                message.width, message.row_step = 100, 100 * message.point_step
+            if topic not in ("/cloud", "/tf"):
+                return []
+            times = [t + rospy.Duration(0.1 * i / copies) for i in range(copies)]
+            return [(topic, self.restamped(message, time), time) for time in times]
+
+        bag = self.rewrite("rapid.bag", multiply)
+        with running(self.parameters(queue_size=10000)) as node:
+            play(bag, rate=1.0)
+            report = node.wait_for_scans(copies * SCANS, timeout=60.0)
+            self.assertEqual((report.scans, report.tf_failures), (copies * SCANS, 0))
+
     def test_two_lidars_make_one_map(self):
         count = [0]
 
@@ -449,7 +512,7 @@ class Online(unittest.TestCase):
 
     def test_what_was_saved_is_gone_on_with(self):
         with running(self.parameters()) as node:
-            play(self.bag, "--duration", "2")
+            play(self.bag, duration=2.0)
             wait_for(lambda: len(node.reports) >= 15, "some scans")
             time.sleep(1.0)
             scans = node.reports[-1].scans
@@ -467,7 +530,7 @@ class Online(unittest.TestCase):
             self.assertEqual(again.cleaned_points + again.removed_points, points)
             self.assertEqual(agreement(self.folder / "out/again", self.folder / "out/half/a"), 1.0)
             node.call("pause", Empty)
-            play(self.bag, "--duration", "1")
+            play(self.bag, duration=1.0)
             time.sleep(0.5)
             self.assertEqual(node.reports[-1].scans, scans)
 
