@@ -45,10 +45,9 @@ BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const Agreem
 BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 
 /// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
-/// object: a share of their occupied neighbours is dynamic (a larger one for unknown cells, of
-/// which nothing says that they moved), and they do not rest on a cell that stays (what is seen
-/// over the roof of a parked car is no reason to remove the roof). Columns at the window's border
-/// do not change.
+/// object: a share of their occupied neighbours is dynamic, and they do not rest on a cell that
+/// stays (what is seen over the roof of a parked car is no reason to remove the roof). Columns at
+/// the window's border do not change.
 /// @param dynamic  the dynamic cells of the same window
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config);

@@ -126,7 +126,7 @@ struct FineGroundConfig {
 
 struct GroundLayerConfig {
   bool enabled = true;
-  double bin_height = 0.05;
+  double bin_height = 0.025;
   double search_height = 0.4;
   double max_thickness = 0.15;
   double tail_share = 0.1;
@@ -195,9 +195,9 @@ struct EvidenceConfig {
   double strong_ratio = 1.0;
   double leaning_ratio = 0.03;
   int unknown_hits = 12;
-  int flicker_gaps = 2;
+  int flicker_gaps = 3;
   int flicker_length = 4;
-  double flicker_order = 16.0;
+  double flicker_order = 5.0;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -233,7 +233,7 @@ struct AgreementConfig {
   double min_share = 0.6;
   double min_share_strong = 0.2;
   double join_share = 0.4;
-  double unknown_share = 0.5;
+  double unknown_share = 0.4;
   int join_rounds = 8;
   int surface_bits = 2;
   int overhead_bits = 10;

@@ -253,7 +253,7 @@ TEST_F(NoisyPoses, OnlineToo) {
   const Kept with = online(true), without = online(false);
   EXPECT_GT(with.ground, 0.99);
   EXPECT_GT(with.ground, without.ground);
-  EXPECT_LT(with.walker, without.walker);
+  EXPECT_LT(with.walker, 0.1);
 }
 
 }  // namespace
