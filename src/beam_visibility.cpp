@@ -242,14 +242,17 @@ class BeamSums {
     }
   }
 
-  bool seesFree(int first_slope, int last_slope, const VisibilityConfig& config) const {
+  enum class Seen { kNot, kByFewBeams, kFree };
+
+  Seen see(int first_slope, int last_slope, const VisibilityConfig& config) const {
     const int begin = std::max(first_slope, first_slope_) - first_slope_;
     const int end = std::min(last_slope, last_slope_) - first_slope_ + 1;
-    if (begin >= end) return false;
+    if (begin >= end) return Seen::kNot;
     const auto from = static_cast<std::size_t>(begin), to = static_cast<std::size_t>(end);
     const int all = all_up_to_[to] - all_up_to_[from];
     const int passed = passed_up_to_[to] - passed_up_to_[from];
-    return passed >= config.min_beams && passed >= config.min_share * all;
+    if (passed == 0 || passed < config.min_share * all) return Seen::kNot;
+    return passed < config.min_beams ? Seen::kByFewBeams : Seen::kFree;
   }
 
  private:
@@ -259,8 +262,10 @@ class BeamSums {
   std::vector<BeamImage::Pixel> all_up_to_, passed_up_to_;
 };
 
+/// @param few  becomes the candidates that would be free if fewer beams were enough
 Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
-              const VisibilityConfig& config, BeamSums& sums) {
+              const VisibilityConfig& config, BeamSums& sums, Bits& few) {
+  few = 0;
   // Cells that reach out of the image's slopes are not judged.
   while (candidates != 0 && view.firstSlope(lowestBitIndex(candidates)) < 0) {
     candidates &= candidates - 1;
@@ -276,7 +281,9 @@ Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
   Bits free = 0;
   for (Bits rest = candidates; rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
-    if (sums.seesFree(view.firstSlope(bit), view.lastSlope(bit), config)) free |= lowestBit(rest);
+    const BeamSums::Seen seen = sums.see(view.firstSlope(bit), view.lastSlope(bit), config);
+    if (seen == BeamSums::Seen::kFree) free |= lowestBit(rest);
+    if (seen == BeamSums::Seen::kByFewBeams) few |= lowestBit(rest);
   }
   return free;
 }
@@ -331,12 +338,13 @@ void BeamImage::fill(const PlacedScan& scan) {
 
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config, BitGrid recycled) {
+                      const VisibilityConfig& config, BitGrid recycled, BitGrid* few) {
   const ColumnWindow& window = candidates.window();
   const float res_g = static_cast<float>(matrix.res_g);
   const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
   BitGrid seen_free = std::move(recycled);
   seen_free.reset(window, 0);
+  if (few != nullptr) few->reset(window, 0);
   const float margin = 0.5F * res_g + static_cast<float>(config.margin);
   const bool pose_is_unsure = config.pose_position > 0.0 || config.pose_rotation > 0.0;
   ColumnViews views;
@@ -354,13 +362,15 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
       const ColumnView view = views.at(i, beams, margin + unsure);
       const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
       if (judged == 0 || !anyBeamPassed(beams, view)) continue;
-      Bits free = seenFree(judged, beams, view, config, sums);
+      Bits by_few = 0;
+      Bits free = seenFree(judged, beams, view, config, sums, by_few);
       if (free != 0 && pose_is_unsure) {
         // The cell may be anywhere around where the pose puts it: all of that must be free.
         const ColumnView around = views.at(i, beams, margin + unsure, unsure, matrix);
-        free = seenFree(free, beams, around, config, sums);
+        free = seenFree(free, beams, around, config, sums, by_few);
       }
       seen_free.at(x, views.y(i)) = free;
+      if (few != nullptr && !pose_is_unsure) few->at(x, views.y(i)) = by_few;
     }
     views.clear();
   };

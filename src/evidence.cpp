@@ -6,8 +6,9 @@
 
 namespace beautymap {
 
-void ColumnEvidence::observe(Bits hit, Bits seen_free) {
+void ColumnEvidence::observe(Bits hit, Bits seen_free, Bits passed_by_few) {
   const Bits free = seen_free & ~hit;
+  few_.increment(passed_by_few & ~(hit | seen_free));
   if (hit != 0) {
     hits_.increment(hit);
     // A hit ends the stretch of frees after the hit before it.
@@ -35,6 +36,7 @@ void ColumnEvidence::append(const ColumnEvidence& later) {
   between_.add(later.between_, hit_later);
   gaps_.increment(after_.any() & ended);
   gaps_.add(later.gaps_, hit_later);
+  few_.add(later.few_, ~Bits{0});
   after_.assign(later.after_, hit_later);
   hits_.add(later.hits_, ~Bits{0});
 }
@@ -45,6 +47,7 @@ void ColumnEvidence::shift(int bits, Bits mask) {
   between_.shift(bits, mask);
   after_.shift(bits, mask);
   gaps_.shift(bits, mask);
+  few_.shift(bits, mask);
 }
 
 bool ColumnEvidence::flickers(int bit, const EvidenceConfig& config) const {
@@ -69,7 +72,8 @@ bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {
   const int hit = hits(bit);
   const int before = freeBefore(bit);
   const int after = freeAfter(bit);
-  const int free = before + freeBetween(bit) + after;
+  double free = before + freeBetween(bit) + after;
+  if (hit <= config.few_beams_hits) free += 0.5 * passedByFew(bit);
   // A full counter of hits stands for any number of them: what was seen free before or between them
   // is outvoted.
   const bool hits_known = hit < decltype(hits_)::kMax;

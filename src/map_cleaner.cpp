@@ -194,7 +194,7 @@ void MapCleaner::findFree(ScanView& view) const {
   view.beams->fill(view.placed);
   clock.lap("beam_image");
   view.free = cellsSeenFree(*view.beams, candidates, ground, view.placed, config_.matrix,
-                            config_.visibility, std::move(view.free));
+                            config_.visibility, std::move(view.free), &view.few);
   clock.lap("beam_visibility");
 }
 
@@ -216,10 +216,11 @@ void MapCleaner::addEvidence(const ScanView& view) {
   forEachColumn(map_, window, [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits hit = view.hit.at(x, y);
     const Bits free = view.free.at(x, y);
-    if ((hit | free) == 0) return;
+    const Bits few = view.few.at(x, y);
+    if ((hit | free | few) == 0) return;
     tile.occupied[column] |= hit;
     if (tile.flat[column]) return;  // nothing would ask for it
-    tile.evidence.touch(column).observe(hit, free);
+    tile.evidence.touch(column).observe(hit, free, few);
   });
   clock.lap("evidence");
 }

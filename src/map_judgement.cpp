@@ -51,7 +51,7 @@ void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) con
   const Bits judged =
       cells & tile.occupied[column] & ~(ground_bit < 0 ? Bits{0} : Bits{1} << ground_bit);
   Bits suspected = 0, strong = 0, leaning = 0;
-  for (Bits rest = judged & ever_free; rest != 0; rest &= rest - 1) {
+  for (Bits rest = judged & (ever_free | evidence.everPassedByFew()); rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
     if (evidence.isDynamic(bit, config_.evidence)) suspected |= lowestBit(rest);
     if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);

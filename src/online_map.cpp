@@ -169,7 +169,7 @@ void OnlineMap::addHitEvidence() {
   const ColumnWindow window = seenRegion(placed_, config_.matrix);
   ground_ = map_.extract(window, &Tile::ground, Tile::kNoHeight, std::move(ground_));
   hits_ = encodeScan(placed_, ground_, config_.matrix, std::move(hits_));
-  addEvidence(hits_, true);
+  addEvidence(hits_, Seen::kHit);
 }
 
 void OnlineMap::addSeenFree() {
@@ -191,28 +191,32 @@ void OnlineMap::addSeenFree() {
   clock.lap("matrix_comparison");
   const auto look = [&](Half& half) {
     half.seen_free = cellsSeenFree(beams_, half.candidates, ground_, placed_, config_.matrix,
-                                   config_.visibility, std::move(half.seen_free));
+                                   config_.visibility, std::move(half.seen_free), &half.few);
   };
   auto other = std::async(std::launch::async, look, std::ref(halves_[0]));
   look(halves_[1]);
   other.get();
   clock.lap("beam_visibility");
-  for (const Half& half : halves_) addEvidence(half.seen_free, false);
+  for (const Half& half : halves_) {
+    addEvidence(half.seen_free, Seen::kFree);
+    addEvidence(half.few, Seen::kPassedByFew);
+  }
   clock.lap("evidence");
   // Nothing of a scan may wait for the next one: the tiles may be stored before.
   updateGround();
   clock.lap("coarse_ground");
 }
 
-void OnlineMap::addEvidence(const BitGrid& cells, bool hit) {
+void OnlineMap::addEvidence(const BitGrid& cells, Seen seen) {
   const Bits far_below = lowBits(config_.matrix.bits_below - 1);
   forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
     const Bits observed = cells.at(x, y);
     if (observed == 0) return;
     ColumnEvidence& evidence = tile.evidence.touch(column);
-    evidence.observe(hit ? observed : 0, hit ? 0 : observed);
+    const auto as = [&](Seen what) { return seen == what ? observed : Bits{0}; };
+    evidence.observe(as(Seen::kHit), as(Seen::kFree), as(Seen::kPassedByFew));
     // Free space far below a column's ground says that it is none.
-    if (!hit && tile.lowest[column] != Tile::kNoHeight &&
+    if (seen == Seen::kFree && tile.lowest[column] != Tile::kNoHeight &&
         anySeenFree(evidence, observed & far_below, config_.evidence.min_free_in_order)) {
       lowered_.push_back({cells.window().corner.x + x, cells.window().corner.y + y});
     }

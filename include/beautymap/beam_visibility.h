@@ -102,8 +102,11 @@ class BeamImage {
 /// hold for the cell with that margin around it, so that drift does not wear down walls: a margin
 /// can only make fewer cells seen free.
 /// @param recycled  an earlier result whose memory is used again
+/// @param few       becomes the candidates that would be seen free if fewer beams were enough; none
+///                  with a stated error of the pose
 BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
                       const PlacedScan& scan, const MatrixConfig& matrix,
-                      const VisibilityConfig& config, BitGrid recycled = {});
+                      const VisibilityConfig& config, BitGrid recycled = {},
+                      BitGrid* few = nullptr);
 
 }  // namespace beautymap

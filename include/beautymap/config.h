@@ -195,6 +195,7 @@ struct EvidenceConfig {
   double strong_ratio = 1.0;
   double leaning_ratio = 0.03;
   int unknown_hits = 12;
+  int few_beams_hits = 2;
   int flicker_gaps = 3;
   int flicker_length = 4;
   double flicker_order = 5.0;
@@ -217,6 +218,9 @@ struct EvidenceConfig {
       "hits");
     v("unknown_hits", unknown_hits, 0, 1023, "scans",
       "a cell that was never seen free is unknown when no more scans hit it");
+    v("few_beams_hits", few_beams_hits, 0, 1023, "scans",
+      "where no more scans hit a cell, those count half in which too few beams passed it to be "
+      "seen free");
     v("flicker_gaps", flicker_gaps, 0, 1023, "gaps",
       "a cell flickers, as edges do, when it was seen free between its hits in at least as many "
       "stretches: it is dynamic only if its neighbours say so; 0: never");

@@ -97,8 +97,9 @@ class BitCounters {
 /// are noise at an edge when they come in many short gaps.
 class ColumnEvidence {
  public:
-  /// One scan: cells it hit and cells it saw free. A cell in neither was not seen.
-  void observe(Bits hit, Bits seen_free);
+  /// One scan: cells it hit, cells it saw free, and cells that too few beams passed to be sure. A
+  /// cell in none was not seen.
+  void observe(Bits hit, Bits seen_free, Bits passed_by_few = 0);
 
   /// Appends the evidence (another object) of the scans that follow this one's. Associative: any
   /// cut of the scans into stretches gives the same.
@@ -110,12 +111,16 @@ class ColumnEvidence {
 
   /// Cells that were seen free at least once.
   Bits everFree() const { return before_.any() | between_.any() | after_.any(); }
+  /// Cells that too few beams passed at least once.
+  Bits everPassedByFew() const { return few_.any(); }
   /// Cells that more scans hit than that.
   Bits hitMoreOften(int scans) const { return hits_.above(scans); }
   int hits(int bit) const { return hits_.count(bit); }
   int freeBefore(int bit) const { return before_.count(bit); }
   int freeBetween(int bit) const { return between_.count(bit); }
   int freeAfter(int bit) const { return after_.count(bit); }
+  /// In how many scans too few beams passed the cell.
+  int passedByFew(int bit) const { return few_.count(bit); }
   /// In how many stretches the frees between hits came.
   int gaps(int bit) const { return gaps_.count(bit); }
 
@@ -139,6 +144,7 @@ class ColumnEvidence {
   BitCounters<10> between_;
   BitCounters<8> after_;
   BitCounters<10> gaps_;
+  BitCounters<4> few_;  // only asked for where hits are few
 };
 
 }  // namespace beautymap

@@ -27,6 +27,7 @@ struct ScanView {
   BitGrid hit;    ///< cells around the sensor that the scan hit
   /// Evidence: cells that it saw free. Published method: the map's cells that it finds dynamic.
   BitGrid free;
+  BitGrid few;                     ///< evidence: cells that too few beams passed
   StageTimes times;                ///< of the last of place(), look() and classify()
   std::optional<BeamImage> beams;  ///< large, and only evidence needs it
 };

@@ -71,7 +71,8 @@ class OnlineMap {
   void addOccupied();
   void addHitEvidence();
   /// @param hit  whether the cells were hit; otherwise they were seen free
-  void addEvidence(const BitGrid& cells, bool hit);
+  enum class Seen { kHit, kFree, kPassedByFew };
+  void addEvidence(const BitGrid& cells, Seen seen);
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
   void findDynamicInScan();
   void classifyLive();
@@ -90,7 +91,7 @@ class OnlineMap {
   // Of one scan; members so that their memory is used again.
   HeightGrid ground_;
   struct Half {
-    BitGrid candidates, seen_free;
+    BitGrid candidates, seen_free, few;
   };
   std::array<Half, 2> halves_;
   EvidenceWindow live_;

@@ -530,5 +530,28 @@ TEST(CellsSeenFree, AgreesWithALoopOverAllPoints) {
   EXPECT_LT(undecided, (free + not_free) / 100);
 }
 
+TEST(CellsSeenFree, WhatTooFewBeamsPassedIsWhatOneBeamWouldAdd) {
+  int many = 0;
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    const Case c(seed);
+    const PlacedScan scan = test::placedScan(c.anchor, c.sensor, c.points);
+    BeamImage beams(c.config);
+    beams.fill(scan);
+    BitGrid few;
+    const BitGrid free = cellsSeenFree(beams, c.candidates, c.ground, scan, c.matrix, c.config,
+                                       BitGrid(c.candidates.window(), ~Bits{0}), &few);
+    VisibilityConfig one_beam = c.config;
+    one_beam.min_beams = 1;
+    const BitGrid any = cellsSeenFree(beams, c.candidates, c.ground, scan, c.matrix, one_beam);
+    for (int x = 0; x < free.size(); ++x) {
+      for (int y = 0; y < free.size(); ++y) {
+        ASSERT_EQ(few.at(x, y), any.at(x, y) & ~free.at(x, y)) << "seed " << seed;
+        many += few.at(x, y) != 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(many, 100);
+}
+
 }  // namespace
 }  // namespace beautymap

@@ -21,6 +21,7 @@ constexpr int kMaxHits = 1023;
 constexpr int kMaxStretch = 255;
 constexpr int kMaxBetween = 1023;
 constexpr int kMaxGaps = 1023;
+constexpr int kMaxFew = 15;
 
 bool isSet(Bits bits, int bit) { return (bits >> bit & 1) != 0; }
 
@@ -156,7 +157,7 @@ TEST(BitCounters, AFullCounterStaysFullAndTouchesNoOther) {
   EXPECT_EQ(counters.any(), Bits{1} << 17);
 }
 
-enum class Event { kUnseen, kHit, kFree };
+enum class Event { kUnseen, kHit, kFree, kFewBeams };
 
 /// One scan's events of all cells of a column.
 using Events = std::array<Event, kMaxBits>;
@@ -167,7 +168,7 @@ std::vector<Events> randomEvents(Random& random, int scans) {
   for (double& c : change) c = random.pick<double>({0.0, 0.002, 0.005, 0.05, 0.5});
   const auto any = [&] {
     return random.pick<Event>(
-        {Event::kUnseen, Event::kHit, Event::kHit, Event::kFree, Event::kFree});
+        {Event::kUnseen, Event::kHit, Event::kHit, Event::kFree, Event::kFree, Event::kFewBeams});
   };
   Events now{};
   for (Event& e : now) e = any();
@@ -182,12 +183,13 @@ std::vector<Events> randomEvents(Random& random, int scans) {
 }
 
 void observe(ColumnEvidence& evidence, const Events& events) {
-  Bits hit = 0, free = 0;
+  Bits hit = 0, free = 0, few = 0;
   for (std::size_t bit = 0; bit < events.size(); ++bit) {
     if (events[bit] == Event::kHit) hit |= Bits{1} << bit;
     if (events[bit] == Event::kFree) free |= Bits{1} << bit;
+    if (events[bit] == Event::kFewBeams) few |= Bits{1} << bit;
   }
-  evidence.observe(hit, free);
+  evidence.observe(hit, free, few);
 }
 
 ColumnEvidence observed(const std::vector<Events>& scans, std::size_t first, std::size_t end) {
@@ -206,16 +208,18 @@ struct Counts {
   int between = 0;
   int after = 0;
   int gaps = 0;
+  int few = 0;
 };
 
 /// From the plain list of a cell's events.
 Counts countsOf(const std::vector<Events>& scans, int bit) {
   std::vector<Event> seen;
+  Counts counts;
   for (const Events& events : scans) {
     const Event e = events[static_cast<std::size_t>(bit)];
-    if (e != Event::kUnseen) seen.push_back(e);
+    if (e == Event::kFewBeams) counts.few = std::min(kMaxFew, counts.few + 1);
+    if (e == Event::kHit || e == Event::kFree) seen.push_back(e);
   }
-  Counts counts;
   const auto hit_count = static_cast<int>(std::count(seen.begin(), seen.end(), Event::kHit));
   counts.hits = std::min(kMaxHits, hit_count);
   int hits_so_far = 0;
@@ -247,6 +251,8 @@ void expectCounts(const ColumnEvidence& evidence, const std::vector<Events>& sca
     ASSERT_EQ(evidence.freeBetween(bit), expected.between) << "bit " << bit;
     ASSERT_EQ(evidence.freeAfter(bit), expected.after) << "bit " << bit;
     ASSERT_EQ(evidence.gaps(bit), expected.gaps) << "bit " << bit;
+    ASSERT_EQ(evidence.passedByFew(bit), expected.few) << "bit " << bit;
+    ASSERT_EQ(isSet(evidence.everPassedByFew(), bit), expected.few > 0) << "bit " << bit;
     ASSERT_EQ(isSet(evidence.everFree(), bit),
               expected.before + expected.between + expected.after > 0)
         << "bit " << bit;
@@ -283,7 +289,8 @@ TEST(ColumnEvidence, LongDrivesFillTheCountersAndNoMore) {
 
 TEST(ColumnEvidence, ACellThatIsHitIsNotFreeInTheSameScan) {
   ColumnEvidence evidence;
-  evidence.observe(Bits{1}, Bits{3});
+  evidence.observe(Bits{1}, Bits{3}, Bits{7});
+  EXPECT_EQ(evidence.everPassedByFew(), Bits{4});
   EXPECT_EQ(evidence.hits(0), 1);
   EXPECT_EQ(evidence.everFree(), Bits{2});
 }
@@ -357,6 +364,7 @@ bool isStrong(const std::vector<Stretch>& story, const EvidenceConfig& config = 
 constexpr Event kHit = Event::kHit;
 constexpr Event kFree = Event::kFree;
 constexpr Event kUnseen = Event::kUnseen;
+constexpr Event kFewBeams = Event::kFewBeams;
 
 TEST(EvidenceRules, OneFreeScanRemovesNothing) {
   for (const int hits : {1, 2, 3, 100}) {
@@ -409,6 +417,18 @@ std::vector<Stretch> repeated(const std::vector<Stretch>& story, int times) {
   std::vector<Stretch> all;
   for (int i = 0; i < times; ++i) all.insert(all.end(), story.begin(), story.end());
   return all;
+}
+
+TEST(EvidenceRules, SingleBeamsCountHalfWhereACellWasSeldomHit) {
+  EXPECT_FALSE(isDynamic({{kHit, 1}, {kFewBeams, 3}}));
+  EXPECT_TRUE(isDynamic({{kHit, 1}, {kFewBeams, 4}}));
+  EXPECT_TRUE(isDynamic({{kFewBeams, 2}, {kHit, 1}, {kFree, 1}}));
+  EXPECT_FALSE(isDynamic({{kHit, 2}, {kFewBeams, 4}}));
+  EXPECT_TRUE(isDynamic({{kHit, 2}, {kFewBeams, 5}}));
+  EXPECT_FALSE(isDynamic({{kHit, 3}, {kFewBeams, 100}}));
+  EvidenceConfig never;
+  never.few_beams_hits = 0;
+  EXPECT_FALSE(isDynamic({{kHit, 1}, {kFewBeams, 100}}, never));
 }
 
 TEST(EvidenceRules, AnEdgeThatFlickersIsNotDynamicByItself) {
@@ -503,6 +523,7 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
     config.order_ratio = random.uniform(0.0, 1.0);
     config.strong_ratio = random.uniform(0.0, 4.0);
     config.leaning_ratio = random.uniform(0.0, 0.5);
+    config.few_beams_hits = random.integer(0, 20);
     config.flicker_gaps = random.integer(0, 4);
     config.flicker_length = random.integer(0, 20);
     config.flicker_order = random.uniform(0.0, 10.0);
@@ -510,7 +531,8 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
     const ColumnEvidence evidence = observed(scans);
     for (int bit = 0; bit < kMaxBits; ++bit) {
       const Counts c = countsOf(scans, bit);
-      const int free = c.before + c.between + c.after;
+      const double few = c.hits <= config.few_beams_hits ? 0.5 * c.few : 0.0;
+      const double free = c.before + c.between + c.after + few;
       const bool by_ratio =
           c.hits < kMaxHits && free >= config.min_free && free > config.free_ratio * c.hits;
       const auto decides = [&](int ordered) {
