@@ -227,8 +227,9 @@ class NoisyPoses : public testing::Test {
     return kept([&](const Scan& scan) { return cleaner.classify(scan); });
   }
 
-  Kept online(bool levelling) const {
+  Kept online(bool levelling, double bin_height = GroundLayerConfig().bin_height) const {
     Config config;
+    config.ground_layer.bin_height = bin_height;
     config.levelling.enabled = levelling;
     OnlineMap map(config);
     for (const LabelledScan& scan : scans_) {
@@ -254,6 +255,13 @@ TEST_F(NoisyPoses, OnlineToo) {
   EXPECT_GT(with.ground, 0.99);
   EXPECT_GT(with.ground, without.ground);
   EXPECT_LT(with.walker, 0.1);
+}
+
+TEST_F(NoisyPoses, OnlineWithCoarseBinsOfTheGroundToo) {
+  const Kept with = online(true, 0.05), without = online(false, 0.05);
+  EXPECT_GT(with.ground, 0.99);
+  EXPECT_GT(with.ground, without.ground);
+  EXPECT_LT(with.walker, without.walker);
 }
 
 }  // namespace

@@ -178,7 +178,9 @@ class Player:
             ["rosbag", "play", "--clock", "-q", "-k", "--wait-for-subscribers", "-r", str(rate),
              *(["-u", str(duration)] if duration < math.inf else []), f"--bags={bag}",
              "--topics", *heard], stdout=subprocess.DEVNULL)
-        wait_for(lambda: clock and clock[-1] > end - 0.1, f"the end of {bag}", timeout=300)
+        wait_for(lambda: cls.process.poll() is not None or clock and clock[-1] > end - 0.1,
+                 f"the end of {bag}", timeout=300)
+        assert cls.process.poll() is None, f"rosbag play ended by itself: {bag}"
         subscriber.unregister()
 
     @classmethod
