@@ -165,11 +165,37 @@ void OnlineMap::addOccupied() {
   });
 }
 
+template <typename F>
+void OnlineMap::addEvidence(F seen_at) {
+  const Bits far_below = lowBits(config_.matrix.bits_below - 1);
+  const ColumnWindow& window = hits_.window();
+  forEachColumn(map_, window, [&](int x, int y, Tile& tile, std::size_t column) {
+    const Seen seen = seen_at(x, y);
+    const Bits observed = seen.hit | seen.free | seen.few;
+    if (observed == 0) return;
+    ColumnEvidence& evidence = tile.evidence.touch(column);
+    evidence.observe(seen.hit, seen.free, seen.few);
+    // Free space far below a column's ground says that it is none.
+    if (seen.free != 0 && tile.lowest[column] != Tile::kNoHeight &&
+        anySeenFree(evidence, seen.free & far_below, config_.evidence.min_free_in_order)) {
+      lowered_.push_back({window.corner.x + x, window.corner.y + y});
+    }
+    if ((observed & tile.occupied[column]) == 0) return;
+    const auto judged = [&] {
+      return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],
+                             tile.unknown[column]);
+    };
+    const auto before = judged();
+    judgement_.judgeEvidence(tile, column, observed);
+    if (judged() != before) tile.unsettled = true;
+  });
+}
+
 void OnlineMap::addHitEvidence() {
   const ColumnWindow window = seenRegion(placed_, config_.matrix);
   ground_ = map_.extract(window, &Tile::ground, Tile::kNoHeight, std::move(ground_));
   hits_ = encodeScan(placed_, ground_, config_.matrix, std::move(hits_));
-  addEvidence(hits_, Seen::kHit);
+  addEvidence([this](int x, int y) { return Seen{hits_.at(x, y), 0, 0}; });
 }
 
 void OnlineMap::addSeenFree() {
@@ -197,38 +223,14 @@ void OnlineMap::addSeenFree() {
   look(halves_[1]);
   other.get();
   clock.lap("beam_visibility");
-  for (const Half& half : halves_) {
-    addEvidence(half.seen_free, Seen::kFree);
-    addEvidence(half.few, Seen::kPassedByFew);
-  }
+  addEvidence([&](int x, int y) {
+    const Half& half = halves_[x < middle ? 0 : 1];
+    return Seen{0, half.seen_free.at(x, y), half.few.at(x, y)};
+  });
   clock.lap("evidence");
   // Nothing of a scan may wait for the next one: the tiles may be stored before.
   updateGround();
   clock.lap("coarse_ground");
-}
-
-void OnlineMap::addEvidence(const BitGrid& cells, Seen seen) {
-  const Bits far_below = lowBits(config_.matrix.bits_below - 1);
-  forEachColumn(map_, cells.window(), [&](int x, int y, Tile& tile, std::size_t column) {
-    const Bits observed = cells.at(x, y);
-    if (observed == 0) return;
-    ColumnEvidence& evidence = tile.evidence.touch(column);
-    const auto as = [&](Seen what) { return seen == what ? observed : Bits{0}; };
-    evidence.observe(as(Seen::kHit), as(Seen::kFree), as(Seen::kPassedByFew));
-    // Free space far below a column's ground says that it is none.
-    if (seen == Seen::kFree && tile.lowest[column] != Tile::kNoHeight &&
-        anySeenFree(evidence, observed & far_below, config_.evidence.min_free_in_order)) {
-      lowered_.push_back({cells.window().corner.x + x, cells.window().corner.y + y});
-    }
-    if ((observed & tile.occupied[column]) == 0) return;
-    const auto judged = [&] {
-      return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],
-                             tile.unknown[column]);
-    };
-    const auto before = judged();
-    judgement_.judgeEvidence(tile, column, observed);
-    if (judged() != before) tile.unsettled = true;
-  });
 }
 
 void OnlineMap::settle() {

@@ -70,9 +70,13 @@ class OnlineMap {
   void estimateStaleGround(ColumnIndex index, Tile& tile);
   void addOccupied();
   void addHitEvidence();
-  /// @param hit  whether the cells were hit; otherwise they were seen free
-  enum class Seen { kHit, kFree, kPassedByFew };
-  void addEvidence(const BitGrid& cells, Seen seen);
+  /// What a scan says about the cells of one column.
+  struct Seen {
+    Bits hit, free, few;
+  };
+  /// @param seen_at  (x, y in the window of hits_) -> Seen
+  template <typename F>
+  void addEvidence(F seen_at);
   /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
   void findDynamicInScan();
   void classifyLive();
