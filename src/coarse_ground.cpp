@@ -16,14 +16,33 @@ float medianOf(std::vector<float>& values) {
   return 0.5F * (*middle + *std::max_element(values.begin(), middle));
 }
 
+/// Puts the heights of the columns around one into a vector. @return of how many columns
+int gather(const HeightGrid& lowest, int x, int y, int radius, std::vector<float>& heights) {
+  heights.clear();
+  for (int dx = -radius; dx <= radius; ++dx) {
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const float height = lowest.at(x + dx, y + dy);
+      if (height != Tile::kNoHeight && (dx != 0 || dy != 0)) heights.push_back(height);
+    }
+  }
+  return (2 * radius + 1) * (2 * radius + 1) - 1;
+}
+
+bool enoughNeighbours(const std::vector<float>& neighbours, int possible,
+                      const CoarseGroundConfig& config) {
+  return !neighbours.empty() &&
+         static_cast<double>(neighbours.size()) >= config.min_share * possible;
+}
+
 void estimateTile(const HeightGrid& lowest, Tile& tile, const CoarseGroundConfig& config) {
-  const int r = config.radius;
+  const int margin = coarseGroundMargin(config);
   std::vector<float> neighbours;
   for (int x = 0; x < Tile::kSide; ++x) {
     for (int y = 0; y < Tile::kSide; ++y) {
       const std::size_t column = static_cast<std::size_t>(x << Tile::kShift | y);
       if (tile.lowest[column] == Tile::kNoHeight) continue;
-      const GroundEstimate estimate = coarseGroundAt(lowest, x + r, y + r, neighbours, config);
+      const GroundEstimate estimate =
+          coarseGroundAt(lowest, x + margin, y + margin, neighbours, config);
       tile.ground[column] = estimate.height;
       tile.below_ground[column] = estimate.below_ground;
     }
@@ -46,25 +65,30 @@ void setFlatGround(TileMap& map) {
 
 GroundEstimate coarseGroundOf(float lowest, std::vector<float>& neighbours, int possible,
                               const CoarseGroundConfig& config) {
-  const auto present = static_cast<double>(neighbours.size());
-  if (neighbours.empty() || present < config.min_share * possible) return {lowest, false};
+  if (!enoughNeighbours(neighbours, possible, config)) return {lowest, false};
   const float median = medianOf(neighbours);
   for (float& height : neighbours) height = std::abs(height - median);
   const float margin = static_cast<float>(config.mad_factor) * medianOf(neighbours);
   return {std::clamp(lowest, median - margin, median + margin), lowest < median - margin};
 }
 
+int coarseGroundMargin(const CoarseGroundConfig& config) {
+  return std::max(config.radius, config.wide_radius);
+}
+
 GroundEstimate coarseGroundAt(const HeightGrid& lowest, int x, int y,
                               std::vector<float>& neighbours, const CoarseGroundConfig& config) {
-  const int r = config.radius;
-  neighbours.clear();
-  for (int dx = -r; dx <= r; ++dx) {
-    for (int dy = -r; dy <= r; ++dy) {
-      const float height = lowest.at(x + dx, y + dy);
-      if (height != Tile::kNoHeight && (dx != 0 || dy != 0)) neighbours.push_back(height);
-    }
+  const int possible = gather(lowest, x, y, config.radius, neighbours);
+  const float own = lowest.at(x, y);
+  if (config.wide_radius == 0 || enoughNeighbours(neighbours, possible, config)) {
+    return coarseGroundOf(own, neighbours, possible, config);
   }
-  return coarseGroundOf(lowest.at(x, y), neighbours, (2 * r + 1) * (2 * r + 1) - 1, config);
+  gather(lowest, x, y, config.wide_radius, neighbours);
+  if (neighbours.empty()) return {own, false};
+  const auto last = static_cast<double>(neighbours.size() - 1);
+  const auto low = neighbours.begin() + static_cast<std::ptrdiff_t>(config.wide_quantile * last);
+  std::nth_element(neighbours.begin(), low, neighbours.end());
+  return {std::min(own, *low), false};
 }
 
 void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config) {
@@ -73,9 +97,9 @@ void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config) {
     return;
   }
   map.forEachTile([&](ColumnIndex index, Tile& tile) {
-    const ColumnIndex corner{index.x * Tile::kSide - config.radius,
-                             index.y * Tile::kSide - config.radius};
-    const ColumnWindow window{corner, Tile::kSide + 2 * config.radius};
+    const int margin = coarseGroundMargin(config);
+    const ColumnIndex corner{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin};
+    const ColumnWindow window{corner, Tile::kSide + 2 * margin};
     estimateTile(map.extract(window, &Tile::lowest, Tile::kNoHeight), tile, config);
   });
 }

@@ -95,6 +95,7 @@ void OnlineMap::addLowest() {
 }
 
 void OnlineMap::updateGround() {
+  // Not to the wide radius: a quantile of so many columns hardly moves with one of them.
   const int r = config_.coarse_ground.radius;
   std::vector<ColumnIndex> stale;
   for (const ColumnIndex column : lowered_) {
@@ -115,10 +116,10 @@ void OnlineMap::updateGround() {
 
 void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
   const CoarseGroundConfig& config = config_.coarse_ground;
-  const int r = config.radius;
-  const HeightGrid lowest =
-      map_.extract({{index.x * Tile::kSide - r, index.y * Tile::kSide - r}, Tile::kSide + 2 * r},
-                   &Tile::lowest, Tile::kNoHeight);
+  const int margin = coarseGroundMargin(config);
+  const HeightGrid lowest = map_.extract(
+      {{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin}, Tile::kSide + 2 * margin},
+      &Tile::lowest, Tile::kNoHeight);
   const float below = judgement_.belowGround();
   const auto anchor = [&](std::size_t column, float ground) {
     if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {
@@ -138,7 +139,7 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     if (!tile.stale_ground[column]) continue;
     const int x = static_cast<int>(column) >> Tile::kShift;
     const int y = static_cast<int>(column) & (Tile::kSide - 1);
-    const float ground = coarseGroundAt(lowest, x + r, y + r, neighbours_, config).height;
+    const float ground = coarseGroundAt(lowest, x + margin, y + margin, neighbours_, config).height;
     // A column that was seen through a gap, beside others of which only a ceiling was seen yet,
     // must not be lifted over its points: what lies below its bits is in no cell.
     anchor(column, std::min(ground, tile.lowest[column] + below));

@@ -17,14 +17,20 @@ struct GroundEstimate {
 };
 
 /// Coarse ground of one column (section "coarse ground"): its own lowest height, clamped to
-/// median(L) -/+ mad_factor MAD(L).
+/// median(L) -/+ mad_factor MAD(L), if enough neighbours hold points.
 /// @param lowest      lowest height of the column [m]
 /// @param neighbours  L, the lowest heights of the columns around it [m]; reordered here
 /// @param possible    how many columns the neighbourhood has, with points or not
 GroundEstimate coarseGroundOf(float lowest, std::vector<float>& neighbours, int possible,
                               const CoarseGroundConfig& config);
 
-/// The same for a column of a window of lowest heights that holds its whole neighbourhood.
+/// Half size of the square around a column that its ground is estimated from [columns].
+int coarseGroundMargin(const CoarseGroundConfig& config);
+
+/// The same for a column of a window of lowest heights that reaches coarseGroundMargin() farther.
+/// Beyond the paper: where too few neighbours hold points, as far from the sensor, the lowest point
+/// of a column may be any point of an object. Its ground lies no higher there than wide_quantile of
+/// the lowest heights around it.
 /// @param neighbours  memory that is used again
 GroundEstimate coarseGroundAt(const HeightGrid& lowest, int x, int y,
                               std::vector<float>& neighbours, const CoarseGroundConfig& config);

@@ -75,6 +75,8 @@ struct CoarseGroundConfig {
   int radius = 2;
   double min_share = 0.6;
   double mad_factor = 3.0;
+  int wide_radius = 10;
+  double wide_quantile = 0.3;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -83,10 +85,15 @@ struct CoarseGroundConfig {
       "fine_ground is off too");
     v("radius", radius, 1, 20, "columns", "half size of the square neighbourhood of a column");
     v("min_share", min_share, 0.0, 1.0, "",
-      "share of the neighbouring columns that must hold points, otherwise a column's own lowest "
-      "point is its ground");
+      "share of the neighbouring columns that must hold points for their median to say where the "
+      "ground is");
     v("mad_factor", mad_factor, 0.0, 20.0, "",
       "how many median absolute deviations a ground height may lie from the neighbours' median");
+    v("wide_radius", wide_radius, 0, 100, "columns",
+      "where fewer neighbours hold points: half size of the square whose lowest points a column's "
+      "ground lies no higher than; 0: its own lowest point is its ground there");
+    v("wide_quantile", wide_quantile, 0.0, 1.0, "",
+      "the share of these lowest points that lie below that height");
   }
 };
 

@@ -45,12 +45,33 @@ Ground groundBySorting(double lowest, const std::vector<double>& neighbours, int
   return {std::min(std::max(lowest, l_min), l_max), lowest < l_min};
 }
 
+/// Where too few neighbours hold points: no higher than a quantile of the lowest heights around.
+Ground groundOfWider(double lowest, std::vector<double> around, const CoarseGroundConfig& config) {
+  if (around.empty()) return {lowest, false};
+  std::sort(around.begin(), around.end());
+  const double last = static_cast<double>(around.size() - 1);
+  return {std::min(lowest, around[static_cast<std::size_t>(config.wide_quantile * last)]), false};
+}
+
+std::vector<double> heightsAround(const Heights& lowest, std::pair<int, int> column, int radius) {
+  std::vector<double> heights;
+  for (int dx = -radius; dx <= radius; ++dx) {
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const auto found = lowest.find({column.first + dx, column.second + dy});
+      if ((dx != 0 || dy != 0) && found != lowest.end()) heights.push_back(found->second);
+    }
+  }
+  return heights;
+}
+
 CoarseGroundConfig randomConfig(Random& random) {
   CoarseGroundConfig config;
   config.radius = random.integer(1, 4);
   // Exact in float and double, like the heights: nothing has to be tolerated.
   config.min_share = random.pick<double>({0.0, 0.25, 0.5, 0.625, 1.0});
   config.mad_factor = random.pick<double>({0.0, 0.5, 1.0, 3.0, 20.0});
+  config.wide_radius = random.pick<int>({0, 1, 6});
+  config.wide_quantile = random.pick<double>({0.0, 0.25, 0.5, 1.0});
   return config;
 }
 
@@ -106,6 +127,7 @@ TEST(CoarseGround, OneColumnAgreesWithSorting) {
 }
 
 TEST(CoarseGround, EveryColumnOfAMapAgreesWithSortingItsNeighbours) {
+  int wider = 0;
   for (std::uint32_t seed = 0; seed < 12; ++seed) {
     Random random(seed);
     const CoarseGroundConfig config = randomConfig(random);
@@ -116,19 +138,21 @@ TEST(CoarseGround, EveryColumnOfAMapAgreesWithSortingItsNeighbours) {
     const int r = config.radius;
     const int possible = (2 * r + 1) * (2 * r + 1) - 1;
     for (const auto& column : lowest) {
-      std::vector<double> neighbours;
-      for (int dx = -r; dx <= r; ++dx) {
-        for (int dy = -r; dy <= r; ++dy) {
-          const auto found = lowest.find({column.first.first + dx, column.first.second + dy});
-          if ((dx != 0 || dy != 0) && found != lowest.end()) neighbours.push_back(found->second);
-        }
-      }
-      const Ground expected = groundBySorting(column.second, neighbours, possible, config);
+      const std::vector<double> neighbours = heightsAround(lowest, column.first, r);
+      const bool enough = !neighbours.empty() &&
+                          static_cast<double>(neighbours.size()) >= config.min_share * possible;
+      const Ground expected =
+          enough || config.wide_radius == 0
+              ? groundBySorting(column.second, neighbours, possible, config)
+              : groundOfWider(column.second,
+                              heightsAround(lowest, column.first, config.wide_radius), config);
+      wider += !enough && config.wide_radius > 0;
       const GroundEstimate ground = groundAt(map, column.first.first, column.first.second);
       ASSERT_EQ(ground.height, static_cast<float>(expected.height)) << "seed " << seed;
       ASSERT_EQ(ground.below_ground, expected.below_ground) << "seed " << seed;
     }
   }
+  EXPECT_GT(wider, 2000);
 }
 
 TEST(CoarseGround, ColumnsWithoutPointsHaveNoGround) {
@@ -196,11 +220,40 @@ TEST(CoarseGround, ACarRoofDoesNotLiftTheGround) {
 }
 
 TEST(CoarseGround, ALonelyColumnKeepsItsOwnLowestPoint) {
-  TileMap map = mapOf({{{-7, 3}, 2.5}, {{-6, 3}, -1.0}});
-  estimateCoarseGround(map, CoarseGroundConfig());
+  TileMap map = mapOf({{{-7, 3}, 2.5}, {{-6, 3}, -1.0}, {{20, 3}, 4.0}});
+  CoarseGroundConfig as_published;
+  as_published.wide_radius = 0;
+  estimateCoarseGround(map, as_published);
   EXPECT_EQ(groundAt(map, -7, 3).height, 2.5F);
   EXPECT_EQ(groundAt(map, -6, 3).height, -1.0F);
   EXPECT_FALSE(groundAt(map, -6, 3).below_ground);
+  estimateCoarseGround(map, CoarseGroundConfig());
+  EXPECT_EQ(groundAt(map, -7, 3).height, -1.0F);
+  EXPECT_EQ(groundAt(map, -6, 3).height, -1.0F);
+  EXPECT_EQ(groundAt(map, 20, 3).height, 4.0F);
+}
+
+TEST(CoarseGround, WhereTheGroundIsSeldomHitAnObjectIsNotItsOwnGround) {
+  // Far from the sensor: a ring of a scan on a slope, and beside it the window of a car.
+  Heights lowest;
+  for (int y = -12; y <= 12; ++y) {
+    lowest[{0, y}] = 0.0625 * y;
+    lowest[{5, y}] = 0.0625 * y + 0.25;
+  }
+  lowest[{3, 0}] = 1.5;
+  TileMap map = mapOf(lowest);
+  estimateCoarseGround(map, CoarseGroundConfig());
+  EXPECT_LT(groundAt(map, 3, 0).height, 0.25F);
+  EXPECT_GT(groundAt(map, 3, 0).height, -0.625F);
+  // The points of the ground itself stay in the cells at the ground: it is not lowered by more than
+  // a slope makes of the radius.
+  for (const auto& column : lowest) {
+    const GroundEstimate ground = groundAt(map, column.first.first, column.first.second);
+    EXPECT_LE(ground.height, static_cast<float>(column.second));
+    if (column.second < 1.0) {
+      EXPECT_GE(ground.height, static_cast<float>(column.second) - 0.625F);
+    }
+  }
 }
 
 TEST(CoarseGround, SwitchedOffEveryColumnStartsAtTheLowestPointOfTheMap) {

@@ -63,6 +63,7 @@ Config paperConfig() {
   config.matrix.res_h = 0.5;
   config.matrix.n_bit = 32;
   config.matrix.roi_size = 40.0;
+  config.coarse_ground.wide_radius = 0;
   config.fine_ground.bin_height = 0.125;
   return config;
 }
@@ -83,6 +84,7 @@ Config randomConfig(std::uint32_t seed) {
   config.coarse_ground.radius = random.integer(1, 3);
   config.coarse_ground.min_share = random.pick<double>({0.0, 0.25, 0.625});
   config.coarse_ground.mad_factor = random.pick<double>({1.0, 3.0});
+  config.coarse_ground.wide_radius = 0;
   config.restoration.enabled = random.chance(0.8);
   config.restoration.blind_radius = random.uniform(0.0, 2.0);
   config.restoration.sight_range = random.uniform(2.0, 15.0);
