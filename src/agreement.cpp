@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/agreement.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "beautymap/evidence.h"
@@ -27,12 +30,25 @@ Bits anyOf(const Neighbourhood& columns) {
   return any;
 }
 
+Neighbourhood both(Neighbourhood columns, const Neighbourhood& others) {
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] &= others[i];
+  return columns;
+}
+
+/// Set bits of a column among the counted ones within `reach` (1 or 2) bits of a bit.
+int countWithin(Bits column, int bit, int reach, Bits counted) {
+  // Looked up: not every x86-64 processor counts bits by an instruction.
+  constexpr std::array<std::uint8_t, 32> kOnes{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,
+                                               1, 2, 2, 3, 2, 3, 3, 4, 2, 3, 3, 4, 3, 4, 4, 5};
+  const int low = std::max(0, bit - reach);
+  return kOnes[(column & counted) >> low & lowBits(bit + reach - low + 1)];
+}
+
 /// Set bits within one bit of a bit, in all columns; not the bit itself in the middle.
 int countAround(const Neighbourhood& columns, int bit, Bits counted) {
-  const Bits three = (bit == 0 ? Bits{3} : Bits{7} << (bit - 1)) & counted;
   int count = 0;
-  for (const Bits column : columns) count += __builtin_popcountll(column & three);
-  return count - static_cast<int>((columns[4] & three) >> bit & 1);
+  for (const Bits column : columns) count += countWithin(column, bit, 1, counted);
+  return count - static_cast<int>((columns[4] & counted) >> bit & 1);
 }
 
 void excludeCells(BitGrid& cells, const BitGrid& excluded) {
@@ -41,7 +57,66 @@ void excludeCells(BitGrid& cells, const BitGrid& excluded) {
   }
 }
 
-/// The leaning and unknown cells of one column that join dynamic ones.
+/// Columns of which something depends on what changed in the last round; the others need not be
+/// looked at again.
+using ColumnFlags = ColumnGrid<std::uint8_t>;
+
+/// Sets the flags of a column of the inside and of those around it.
+void mark(ColumnFlags& flags, int x, int y, int reach) {
+  for (int dx = -reach; dx <= reach; ++dx) {
+    for (int dy = -reach; dy <= reach; ++dy) flags.at(x + dx, y + dy) = 1;
+  }
+}
+
+constexpr int kFlickerRounds = 3;  ///< edges are a few cells thick
+
+/// The cells within two columns and two bits of a column's that are set in a grid and counted.
+Bits anyWithinTwo(const BitGrid& cells, int x, int y, Bits counted) {
+  Bits any = 0;
+  for (int dx = -2; dx <= 2; ++dx) {
+    for (int dy = -2; dy <= 2; ++dy) any |= cells.at(x + dx, y + dy);
+  }
+  any &= counted;
+  any |= any << 1 | any >> 1;
+  return any | any << 1 | any >> 1;
+}
+
+/// The occupied cells that nothing speaks against.
+BitGrid stayingCells(const EvidenceWindow& window, const BitGrid& dynamic) {
+  BitGrid staying(dynamic.window(), 0);
+  for (int x = 0; x < dynamic.size(); ++x) {
+    for (int y = 0; y < dynamic.size(); ++y) {
+      staying.at(x, y) = window.occupied.at(x, y) & ~dynamic.at(x, y) & ~window.leaning.at(x, y) &
+                         ~window.unknown.at(x, y);
+    }
+  }
+  return staying;
+}
+
+/// Those of some leaning and unknown cells of one column that join dynamic ones within two cells.
+Bits joiningAcrossGaps(Bits cells, const EvidenceWindow& window, const BitGrid& dynamic, int x,
+                       int y, int ground_bit, const AgreementConfig& config) {
+  cells &= ~dynamic.at(x, y);
+  if (cells == 0) return 0;
+  const Bits counted = ~lowBits(ground_bit + 1);
+  Bits joining = 0;
+  for (Bits rest = cells & anyWithinTwo(dynamic, x, y, counted); rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    int dynamic_count = 0, occupied_count = -1;  // without the cell itself
+    for (int dx = -2; dx <= 2; ++dx) {
+      for (int dy = -2; dy <= 2; ++dy) {
+        dynamic_count += countWithin(dynamic.at(x + dx, y + dy), bit, 2, counted);
+        occupied_count += countWithin(window.occupied.at(x + dx, y + dy), bit, 2, counted);
+      }
+    }
+    const bool leans = (window.leaning.at(x, y) & lowestBit(rest)) != 0;
+    const double share = leans ? config.join_share : config.unknown_share;
+    if (dynamic_count > 0 && dynamic_count >= share * occupied_count) joining |= lowestBit(rest);
+  }
+  return joining;
+}
+
+/// The leaning and unknown cells of one column that join dynamic ones beside them.
 Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y,
                      int ground_bit, const AgreementConfig& config) {
   const Bits counted = ~lowBits(ground_bit + 1);
@@ -65,6 +140,31 @@ Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x
     }
   }
   return joining;
+}
+
+/// The dynamic cells of one column that are but flickering edges.
+Bits flickerInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y,
+                     int ground_bit, const AgreementConfig& config) {
+  const Bits counted = ~lowBits(ground_bit + 1);
+  const Bits cells = dynamic.at(x, y) & counted;
+  if (cells == 0) return 0;
+  const Neighbourhood dynamic_around = around(dynamic, x, y);
+  const Neighbourhood flickering = both(dynamic_around, around(window.flickering, x, y));
+  if (anyOf(flickering) == 0) return 0;
+  const Neighbourhood suspected = both(dynamic_around, around(window.suspected, x, y));
+  const Neighbourhood occupied = around(window.occupied, x, y);
+  Bits flicker = 0;
+  for (Bits rest = cells; rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    const int itself = (window.flickering.at(x, y) & lowestBit(rest)) != 0 ? 1 : 0;
+    const bool mostly = countAround(flickering, bit, counted) + itself >
+                        config.flicker_share * (countAround(dynamic_around, bit, counted) + 1);
+    if (mostly && countAround(suspected, bit, counted) <
+                      config.join_share * countAround(occupied, bit, counted)) {
+      flicker |= lowestBit(rest);
+    }
+  }
+  return flicker;
 }
 
 }  // namespace
@@ -155,29 +255,71 @@ BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const Agreement
 
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
+  if (dynamic.isAll(0)) return;
   struct Column {
     int x, y;
+    Bits across_gaps;  ///< cells around which nothing stays
     Bits joining;
   };
+  const Bits counted = ~lowBits(ground_bit + 1);
+  const BitGrid staying = stayingCells(window, dynamic);
   std::vector<Column> growing;  // the columns that can
-  for (int x = 1; x + 1 < dynamic.size(); ++x) {
-    for (int y = 1; y + 1 < dynamic.size(); ++y) {
-      const Bits cells = (window.leaning.at(x, y) | window.unknown.at(x, y)) & ~dynamic.at(x, y);
-      if (cells != 0) growing.push_back({x, y, 0});
+  for (int x = 2; x + 2 < dynamic.size(); ++x) {
+    for (int y = 2; y + 2 < dynamic.size(); ++y) {
+      const Bits leaning = window.leaning.at(x, y);
+      const Bits cells = (leaning | window.unknown.at(x, y)) & ~dynamic.at(x, y);
+      if (cells == 0) continue;
+      Bits across_gaps = 0;
+      if (config.across_gaps) {
+        across_gaps = cells & ~(leaning & window.flickering.at(x, y)) & counted &
+                      ~anyWithinTwo(staying, x, y, counted);
+      }
+      growing.push_back({x, y, across_gaps, 0});
     }
   }
+  ColumnFlags near_change(dynamic.window(), 1);
   for (int round = 0; round < config.join_rounds; ++round) {
     Bits any = 0;
     for (Column& column : growing) {
-      column.joining = joiningInColumn(window, dynamic, column.x, column.y, ground_bit, config);
+      column.joining = 0;
+      if (near_change.at(column.x, column.y) == 0) continue;
+      column.joining = joiningInColumn(window, dynamic, column.x, column.y, ground_bit, config) |
+                       joiningAcrossGaps(column.across_gaps, window, dynamic, column.x, column.y,
+                                         ground_bit, config);
       any |= column.joining;
     }
     if (any == 0) break;
-    for (const Column& column : growing) dynamic.at(column.x, column.y) |= column.joining;
+    near_change.reset(dynamic.window(), 0);
+    for (const Column& column : growing) {
+      if (column.joining == 0) continue;
+      dynamic.at(column.x, column.y) |= column.joining;
+      mark(near_change, column.x, column.y, 2);
+    }
   }
 }
 
-int agreementMargin(const AgreementConfig& config) { return 2 + config.join_rounds; }
+void excludeFlicker(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
+                    const AgreementConfig& config) {
+  ColumnFlags near_change(dynamic.window(), 1);
+  for (int round = 0; round < kFlickerRounds; ++round) {
+    ColumnFlags changes(dynamic.window(), 0);
+    BitGrid flicker(dynamic.window(), 0);
+    for (int x = 1; x + 1 < dynamic.size(); ++x) {
+      for (int y = 1; y + 1 < dynamic.size(); ++y) {
+        if (near_change.at(x, y) == 0) continue;
+        flicker.at(x, y) = flickerInColumn(window, dynamic, x, y, ground_bit, config);
+        if (flicker.at(x, y) != 0) mark(changes, x, y, 1);
+      }
+    }
+    if (changes.isAll(0)) break;
+    excludeCells(dynamic, flicker);
+    near_change = std::move(changes);
+  }
+}
+
+int agreementMargin(const AgreementConfig& config) {
+  return 2 + 2 * config.join_rounds + kFlickerRounds;
+}
 
 BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config) {
   BitGrid dynamic = window.suspected;
@@ -186,6 +328,7 @@ BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfi
   excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
   excludeCells(dynamic, overheadNoise(window, ground_bit, config));
   growObjects(window, dynamic, ground_bit, config);
+  excludeFlicker(window, dynamic, ground_bit, config);
   return dynamic;
 }
 

@@ -53,9 +53,9 @@ void ColumnEvidence::shift(int bits, Bits mask) {
 bool ColumnEvidence::flickers(int bit, const EvidenceConfig& config) const {
   const int gap_count = gaps(bit);
   if (config.flicker_gaps == 0 || gap_count < config.flicker_gaps) return false;
-  const double gap = freeBetween(bit) / static_cast<double>(gap_count);
-  return gap <= config.flicker_length &&
-         std::max(freeBefore(bit), freeAfter(bit)) <= config.flicker_order * gap;
+  const int hit = hits(bit);
+  return hit <= config.flicker_hits * (gap_count + 1) &&
+         std::max(freeBefore(bit), freeAfter(bit)) <= config.flicker_order * hit;
 }
 
 bool ColumnEvidence::isStrong(int bit, const EvidenceConfig& config) const {
@@ -68,7 +68,7 @@ bool ColumnEvidence::isLeaning(int bit, const EvidenceConfig& config) const {
 }
 
 bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {
-  if (flickers(bit, config)) return false;
+  if (gaps(bit) >= config.doubt_gaps && flickers(bit, config)) return false;
   const int hit = hits(bit);
   const int before = freeBefore(bit);
   const int after = freeAfter(bit);

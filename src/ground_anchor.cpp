@@ -37,6 +37,7 @@ void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& conf
   move(tile.strong[column]);
   move(tile.leaning[column]);
   move(tile.unknown[column]);
+  move(tile.flickering[column]);
   move(tile.dynamic[column]);
   if (tile.evidence.has(column)) tile.evidence.touch(column).shift(bits, mask);
   if (tile.floors.has(column)) tile.floors.touch(column).bit += bits;

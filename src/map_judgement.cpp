@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "beautymap/agreement.h"
 #include "beautymap/fine_ground.h"
@@ -18,6 +19,25 @@ float depthBelowGround(const MatrixConfig& config) {
   constexpr double kRounding = 1e-3;  // [m]
   const double depth = config.bits_below * config.res_h;
   return static_cast<float>(config.bits_below == 0 ? depth : depth + kRounding);
+}
+
+/// Tiles of a block are judged together: with their own windows, most of what is looked at would be
+/// looked at for several tiles.
+std::pair<std::int32_t, std::int32_t> blockOf(ColumnIndex tile) {
+  constexpr int kShift = 1;  // two by two tiles: their windows fit into a cache
+  return {tile.x >> kShift, tile.y >> kShift};
+}
+
+/// The square of columns around some tiles that reaches so many columns farther.
+ColumnWindow windowOf(const std::vector<ColumnIndex>& tiles, int margin) {
+  ColumnIndex low = tiles.front(), high = low;
+  for (const ColumnIndex tile : tiles) {
+    low = {std::min(low.x, tile.x), std::min(low.y, tile.y)};
+    high = {std::max(high.x, tile.x), std::max(high.y, tile.y)};
+  }
+  const int side = 1 + std::max(high.x - low.x, high.y - low.y);
+  return {{low.x * Tile::kSide - margin, low.y * Tile::kSide - margin},
+          side * Tile::kSide + 2 * margin};
 }
 
 }  // namespace
@@ -50,12 +70,13 @@ void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) con
   const int ground_bit = groundBit(tile, column);
   const Bits judged =
       cells & tile.occupied[column] & ~(ground_bit < 0 ? Bits{0} : Bits{1} << ground_bit);
-  Bits suspected = 0, strong = 0, leaning = 0;
+  Bits suspected = 0, strong = 0, leaning = 0, flickering = 0;
   for (Bits rest = judged & (ever_free | evidence.everPassedByFew()); rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
     if (evidence.isDynamic(bit, config_.evidence)) suspected |= lowestBit(rest);
     if (evidence.isStrong(bit, config_.evidence)) strong |= lowestBit(rest);
     if (evidence.isLeaning(bit, config_.evidence)) leaning |= lowestBit(rest);
+    if (evidence.flickers(bit, config_.evidence)) flickering |= lowestBit(rest);
   }
   const Bits unknown = judged & ~ever_free & ~evidence.hitMoreOften(config_.evidence.unknown_hits);
   const auto set = [&](Bits& of_column, Bits found) { of_column = (of_column & ~cells) | found; };
@@ -63,35 +84,48 @@ void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) con
   set(tile.strong[column], strong);
   set(tile.leaning[column], leaning);
   set(tile.unknown[column], unknown);
+  set(tile.flickering[column], flickering);
 }
 
-void MapJudgement::judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
-  const int margin = agreementMargin(config_.agreement);
-  for (const ColumnIndex index : tiles) {
-    Tile& tile = *map.findTile(index);
-    if (!config_.agreement.enabled) {
-      tile.dynamic = tile.suspected;
-      continue;
-    }
-    const ColumnWindow window{{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin},
-                              Tile::kSide + 2 * margin};
-    const BitGrid suspected = map.extract(window, &Tile::suspected, Bits{0});
-    if (suspected.isAll(0)) {
-      tile.dynamic.fill(0);
-      continue;
-    }
-    const BitGrid dynamic = dynamicCells(
-        {map.extract(window, &Tile::occupied, Bits{0}), suspected,
-         map.extract(window, &Tile::strong, Bits{0}), map.extract(window, &Tile::leaning, Bits{0}),
-         map.extract(window, &Tile::unknown, Bits{0})},
-        config_.matrix.bits_below, config_.agreement);
-    for (int x = 0; x < Tile::kSide; ++x) {
-      for (int y = 0; y < Tile::kSide; ++y) {
-        tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] =
-            dynamic.at(x + margin, y + margin);
+std::vector<ColumnIndex> MapJudgement::judgeAgreement(TileMap& map,
+                                                      std::vector<ColumnIndex> tiles) const {
+  std::vector<ColumnIndex> changed;
+  std::sort(tiles.begin(), tiles.end(), [](ColumnIndex a, ColumnIndex b) {
+    return std::make_tuple(blockOf(a), a.x, a.y) < std::make_tuple(blockOf(b), b.x, b.y);
+  });
+  for (auto begin = tiles.begin(); begin != tiles.end();) {
+    const auto end = std::find_if(
+        begin, tiles.end(), [&](ColumnIndex tile) { return blockOf(tile) != blockOf(*begin); });
+    const BitGrid dynamic = dynamicCellsOf(map, {begin, end});
+    for (; begin != end; ++begin) {
+      Tile& tile = *map.findTile(*begin);
+      const auto before = tile.dynamic;
+      const ColumnIndex corner = dynamic.window().corner;
+      const int x0 = begin->x * Tile::kSide - corner.x, y0 = begin->y * Tile::kSide - corner.y;
+      for (int x = 0; x < Tile::kSide; ++x) {
+        for (int y = 0; y < Tile::kSide; ++y) {
+          tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] =
+              dynamic.at(x0 + x, y0 + y);
+        }
       }
+      if (tile.dynamic != before) changed.push_back(*begin);
     }
   }
+  return changed;
+}
+
+BitGrid MapJudgement::dynamicCellsOf(const TileMap& map,
+                                     const std::vector<ColumnIndex>& tiles) const {
+  const int margin = config_.agreement.enabled ? agreementMargin(config_.agreement) : 0;
+  const ColumnWindow window = windowOf(tiles, margin);
+  BitGrid suspected = map.extract(window, &Tile::suspected, Bits{0});
+  if (!config_.agreement.enabled || suspected.isAll(0)) return suspected;
+  return dynamicCells(
+      {map.extract(window, &Tile::occupied, Bits{0}), std::move(suspected),
+       map.extract(window, &Tile::strong, Bits{0}), map.extract(window, &Tile::leaning, Bits{0}),
+       map.extract(window, &Tile::unknown, Bits{0}),
+       map.extract(window, &Tile::flickering, Bits{0})},
+      config_.matrix.bits_below, config_.agreement);
 }
 
 bool MapJudgement::segmentGround(TileMap& map, const std::vector<ColumnIndex>& tiles) const {
@@ -247,11 +281,13 @@ std::vector<ColumnIndex> tilesOf(const TileMap& map) {
   return tiles;
 }
 
-std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles) {
+std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles,
+                                        int columns) {
+  const int reach = (columns + Tile::kSide - 1) / Tile::kSide;
   std::vector<ColumnIndex> all;
   for (const ColumnIndex tile : tiles) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      for (int dy = -reach; dy <= reach; ++dy) {
         const ColumnIndex near{tile.x + dx, tile.y + dy};
         if (map.findTile(near) != nullptr) all.push_back(near);
       }

@@ -184,7 +184,7 @@ void OnlineMap::addEvidence(F seen_at) {
     if ((observed & tile.occupied[column]) == 0) return;
     const auto judged = [&] {
       return std::make_tuple(tile.suspected[column], tile.strong[column], tile.leaning[column],
-                             tile.unknown[column]);
+                             tile.unknown[column], tile.flickering[column]);
     };
     const auto before = judged();
     judgement_.judgeEvidence(tile, column, observed);
@@ -240,12 +240,13 @@ void OnlineMap::settle() {
     if (tile.unsettled) changed.push_back(index);
     tile.unsettled = false;
   });
-  for (const ColumnIndex index : withNeighbours(map_, changed)) {
-    Tile& tile = *map_.findTile(index);
-    const auto dynamic = tile.dynamic;
-    judgement_.judgeAgreement(map_, {index});
-    const bool divided = judgement_.segmentGround(map_, {index});
-    if (divided || dynamic != tile.dynamic) ++tile.revision;
+  const std::vector<ColumnIndex> affected =
+      withNeighbours(map_, changed, agreementMargin(config_.agreement));
+  for (const ColumnIndex index : judgement_.judgeAgreement(map_, affected)) {
+    ++map_.findTile(index)->revision;
+  }
+  for (const ColumnIndex index : affected) {
+    if (judgement_.segmentGround(map_, {index})) ++map_.findTile(index)->revision;
   }
 }
 
@@ -253,7 +254,8 @@ void OnlineMap::findDynamicInScan() {
   const ColumnWindow& window = hits_.window();
   const Bits above_ground = ~lowBits(config_.matrix.bits_below + 1);
   EvidenceWindow& cells = live_;
-  for (BitGrid* grid : {&cells.occupied, &cells.leaning, &cells.unknown, &dynamic_in_scan_}) {
+  for (BitGrid* grid :
+       {&cells.occupied, &cells.leaning, &cells.unknown, &cells.flickering, &dynamic_in_scan_}) {
     grid->reset(window, 0);
   }
   forEachColumn(map_, window, [&](int x, int y, const Tile& tile, std::size_t column) {
@@ -263,6 +265,7 @@ void OnlineMap::findDynamicInScan() {
     cells.occupied.at(x, y) = hit;
     dynamic_in_scan_.at(x, y) = dynamic;
     cells.leaning.at(x, y) = hit & (tile.leaning[column] | tile.suspected[column]) & ~dynamic;
+    cells.flickering.at(x, y) = hit & tile.flickering[column];
     const Bits unknown = hit & tile.unknown[column] & ~dynamic;
     if (unknown == 0) return;
     // What has been there for longer does not belong to what has just entered.

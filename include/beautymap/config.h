@@ -203,9 +203,10 @@ struct EvidenceConfig {
   double leaning_ratio = 0.03;
   int unknown_hits = 12;
   int few_beams_hits = 2;
-  int flicker_gaps = 3;
-  int flicker_length = 4;
-  double flicker_order = 5.0;
+  int flicker_gaps = 2;
+  int flicker_hits = 3;
+  double flicker_order = 4.0;
+  int doubt_gaps = 3;
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -230,12 +231,14 @@ struct EvidenceConfig {
       "seen free");
     v("flicker_gaps", flicker_gaps, 0, 1023, "gaps",
       "a cell flickers, as edges do, when it was seen free between its hits in at least as many "
-      "stretches: it is dynamic only if its neighbours say so; 0: never");
-    v("flicker_length", flicker_length, 0, 1023, "scans",
-      "and these are on average no longer than that");
+      "gaps; 0: never");
+    v("flicker_hits", flicker_hits, 0, 1023, "scans",
+      "and was hit in no more than that, on average, between two gaps");
     v("flicker_order", flicker_order, 0.0, 1000.0, "",
-      "and it was not seen free before its first or after its last hit for more than this times "
-      "their length");
+      "and was not seen free before its first or after its last hit in more than this times its "
+      "hits");
+    v("doubt_gaps", doubt_gaps, 0, 1023, "gaps",
+      "a cell that flickers with at least as many is dynamic only if its neighbours say so");
   }
 };
 
@@ -246,6 +249,8 @@ struct AgreementConfig {
   double join_share = 0.4;
   double unknown_share = 0.4;
   int join_rounds = 8;
+  bool across_gaps = true;
+  double flicker_share = 0.3;
   int surface_bits = 2;
   int overhead_bits = 10;
   int floor_neighbours = 7;
@@ -261,6 +266,11 @@ struct AgreementConfig {
     v("unknown_share", unknown_share, 0.0, 1.0, "", "the same where a cell is unknown");
     v("join_rounds", join_rounds, 0, 30, "columns",
       "how far an object grows over leaning and unknown cells");
+    v("across_gaps", across_gaps, false, true, "",
+      "let objects grow over gaps of one cell, too, where nothing around stays");
+    v("flicker_share", flicker_share, 0.0, 1.0, "",
+      "where more than this share of the dynamic cells around flickers, a cell needs join_share "
+      "of its neighbours to be dynamic by their own evidence; 1: nowhere");
     v("surface_bits", surface_bits, 0, 16, "bits",
       "that many dynamic cells upon one that stays, with none above them, are its noise");
     v("overhead_bits", overhead_bits, 0, 64, "bits",
@@ -279,7 +289,7 @@ struct OnlineConfig {
   double free_height = 12.0;
   double ground_drift = 0.1;
   double live_share = 0.16;
-  int live_unknown_hits = 8;
+  int live_unknown_hits = 5;
   int live_rounds = 16;
 
   template <typename Visitor>

@@ -127,8 +127,7 @@ class ColumnEvidence {
   /// Whether the cell is dynamic: seen free often enough for its hits, or often enough before the
   /// first or after the last.
   bool isDynamic(int bit, const EvidenceConfig& config) const;
-  /// Whether the cell changes between hit and free as an edge of something that stays does: it is
-  /// no dynamic cell by itself then.
+  /// Whether the cell changes between hit and free as an edge of something that stays does.
   bool flickers(int bit, const EvidenceConfig& config) const;
   /// Whether it was seen free, in the order of something that came or went, so much more often than
   /// hit that few neighbours need to agree.

@@ -43,7 +43,8 @@ class MapJudgement {
   void judgeEvidence(Tile& tile, std::size_t column, Bits cells) const;
   /// Tile::dynamic: the suspected cells that their neighbours support. The tiles beside those that
   /// judgeEvidence changed depend on them, too: see withNeighbours().
-  void judgeAgreement(TileMap& map, const std::vector<ColumnIndex>& tiles) const;
+  /// @return  those of the tiles in which it changed
+  std::vector<ColumnIndex> judgeAgreement(TileMap& map, std::vector<ColumnIndex> tiles) const;
   /// Divides the ground cells of columns with dynamic cells, and floor cells by what was counted
   /// until now, into points of the surface and of the object on it.
   /// @return  whether any cell is divided otherwise than before
@@ -71,6 +72,8 @@ class MapJudgement {
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
+  /// Tile::dynamic as judgeAgreement finds it for some tiles; valid in these.
+  BitGrid dynamicCellsOf(const TileMap& map, const std::vector<ColumnIndex>& tiles) const;
   /// Whether anything can depend on the counts of a column: the published method divides a ground
   /// cell only below an occupied one.
   bool countsGround(const Tile& tile, std::size_t column) const;
@@ -96,7 +99,8 @@ class MapJudgement {
 /// All tiles of a map.
 std::vector<ColumnIndex> tilesOf(const TileMap& map);
 
-/// Tiles of a map and the eight around each, each once.
-std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles);
+/// Tiles of a map and those within so many columns of each, each once.
+std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles,
+                                        int columns);
 
 }  // namespace beautymap

@@ -53,10 +53,11 @@ struct Tile {
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
   std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
-  std::array<Bits, kColumns> strong{};   ///< those of the suspected cells with strong evidence
-  std::array<Bits, kColumns> leaning{};  ///< cells with some evidence for dynamic, not enough
-  std::array<Bits, kColumns> unknown{};  ///< cells never seen free and seldom hit
-  std::array<Bits, kColumns> dynamic{};  ///< cells that are removed
+  std::array<Bits, kColumns> strong{};      ///< those of the suspected cells with strong evidence
+  std::array<Bits, kColumns> leaning{};     ///< cells with some evidence for dynamic, not enough
+  std::array<Bits, kColumns> unknown{};     ///< cells never seen free and seldom hit
+  std::array<Bits, kColumns> flickering{};  ///< cells that change as the edges of what stays do
+  std::array<Bits, kColumns> dynamic{};     ///< cells that are removed
   std::array<std::uint16_t, kColumns>
       static_bins{};  ///< fine bins of the ground cell that stay; 0: all
   SparseColumns<ColumnEvidence, kColumns> evidence;  ///< of columns that were observed

@@ -16,7 +16,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 5\n";
+constexpr char kMagic[] = "beautymap tiles 6\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -54,6 +54,7 @@ void forEachArray(TileType& tile, F f) {
   f(tile.strong.data(), sizeof(tile.strong));
   f(tile.leaning.data(), sizeof(tile.leaning));
   f(tile.unknown.data(), sizeof(tile.unknown));
+  f(tile.flickering.data(), sizeof(tile.flickering));
   f(tile.dynamic.data(), sizeof(tile.dynamic));
   f(tile.static_bins.data(), sizeof(tile.static_bins));
   f(tile.fine_counts.data(), tile.fine_counts.size() * sizeof(tile.fine_counts[0]));

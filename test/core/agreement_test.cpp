@@ -19,7 +19,7 @@ bool isSet(const BitGrid& grid, int x, int y, int bit) {
 
 EvidenceWindow emptyWindow(int size) {
   const BitGrid none(ColumnWindow{{-7, 11}, size}, 0);
-  return {none, none, none, none, none};
+  return {none, none, none, none, none, none};
 }
 
 /// Cells from `low` to `high`, both included.
@@ -92,21 +92,30 @@ TEST(Agreement, TheHighestAndLowestBitsAreNoNeighbours) {
   EXPECT_EQ(countOf(unsupportedCells(window, -1, {})), 0);
 }
 
-/// The neighbours of a cell above the ground cell.
+/// The cells near another one, above the ground cell.
 struct Around {
   int occupied = 0;
   int dynamic = 0;
+  int staying = 0;
+  int flickering = 0;  ///< of the dynamic ones
+  int suspected = 0;   ///< of the dynamic ones
 };
 
 Around look(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, int bit,
-            int ground_bit) {
+            int ground_bit, int reach = 1) {
   Around around;
-  for (int nx = x - 1; nx <= x + 1; ++nx) {
-    for (int ny = y - 1; ny <= y + 1; ++ny) {
-      for (int at = bit - 1; at <= bit + 1; ++at) {
+  for (int nx = x - reach; nx <= x + reach; ++nx) {
+    for (int ny = y - reach; ny <= y + reach; ++ny) {
+      for (int at = bit - reach; at <= bit + reach; ++at) {
         if ((nx == x && ny == y && at == bit) || at <= ground_bit) continue;
-        around.occupied += isSet(window.occupied, nx, ny, at);
-        around.dynamic += isSet(dynamic, nx, ny, at);
+        const bool occupied = isSet(window.occupied, nx, ny, at),
+                   moves = isSet(dynamic, nx, ny, at);
+        const bool open = isSet(window.leaning, nx, ny, at) || isSet(window.unknown, nx, ny, at);
+        around.occupied += occupied;
+        around.dynamic += moves;
+        around.staying += occupied && !moves && !open;
+        around.flickering += moves && isSet(window.flickering, nx, ny, at);
+        around.suspected += moves && isSet(window.suspected, nx, ny, at);
       }
     }
   }
@@ -127,12 +136,27 @@ bool joins(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, i
   if (isSet(dynamic, x, y, bit)) return false;
   const bool leaning = isSet(window.leaning, x, y, bit);
   if (!leaning && !isSet(window.unknown, x, y, bit)) return false;
+  const auto agree = [&](const Around& around) {
+    const double share = leaning ? config.join_share : config.unknown_share;
+    return around.dynamic > 0 && around.dynamic >= share * around.occupied;
+  };
+  const Around far = look(window, dynamic, x, y, bit, ground_bit, 2);
+  const bool across_gaps = config.across_gaps && bit > ground_bit && far.staying == 0 &&
+                           !(leaning && isSet(window.flickering, x, y, bit)) && agree(far);
   const bool rests_on_what_stays = bit - 1 > ground_bit && isSet(window.occupied, x, y, bit - 1) &&
                                    !isSet(dynamic, x, y, bit - 1);
-  if (rests_on_what_stays) return false;
+  return across_gaps ||
+         (!rests_on_what_stays && agree(look(window, dynamic, x, y, bit, ground_bit)));
+}
+
+/// The rule of flicker, one cell after the other.
+bool isFlicker(const EvidenceWindow& window, const BitGrid& dynamic, int x, int y, int bit,
+               int ground_bit, const AgreementConfig& config) {
+  if (bit <= ground_bit || !isSet(dynamic, x, y, bit)) return false;
   const Around around = look(window, dynamic, x, y, bit, ground_bit);
-  const double share = leaning ? config.join_share : config.unknown_share;
-  return around.dynamic > 0 && around.dynamic >= share * around.occupied;
+  const int flickering = around.flickering + isSet(window.flickering, x, y, bit);
+  return flickering > config.flicker_share * (around.dynamic + 1) &&
+         around.suspected < config.join_share * around.occupied;
 }
 
 /// Noise, full columns and blocks.
@@ -158,6 +182,25 @@ EvidenceWindow randomWindow(Random& random, int size) {
       window.strong.at(x, y) = window.suspected.at(x, y) & random.bits();
       window.leaning.at(x, y) = window.occupied.at(x, y) & random.bits();
       window.unknown.at(x, y) = window.occupied.at(x, y) & ~window.leaning.at(x, y) & random.bits();
+      window.flickering.at(x, y) = window.occupied.at(x, y) & random.bits();
+    }
+  }
+  return window;
+}
+
+/// The same with few cells, of which none but a few in one column stays: as far away.
+EvidenceWindow withoutWhatStays(EvidenceWindow window) {
+  for (int x = 0; x < window.occupied.size(); ++x) {
+    for (int y = 0; y < window.occupied.size(); ++y) {
+      Bits& occupied = window.occupied.at(x, y);
+      occupied &= window.flickering.at(x, y) | window.strong.at(x, y);
+      for (BitGrid* grid : {&window.suspected, &window.strong, &window.leaning, &window.unknown,
+                            &window.flickering}) {
+        grid->at(x, y) &= occupied;
+      }
+      const Bits some = x == 0 && y == 0 ? lowBits(20) : Bits{0};
+      window.unknown.at(x, y) = occupied & ~window.leaning.at(x, y) & ~some;
+      window.flickering.at(x, y) &= ~window.strong.at(x, y);
     }
   }
   return window;
@@ -165,7 +208,7 @@ EvidenceWindow randomWindow(Random& random, int size) {
 
 TEST(Agreement, AgreesWithLoopsOverTheNeighbours) {
   int supported = 0, unsupported = 0;
-  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
     Random random(seed);
     const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
     const int ground_bit = random.integer(-1, 40);
@@ -200,20 +243,22 @@ TEST(Agreement, AgreesWithLoopsOverTheNeighbours) {
 
 TEST(Agreement, JoiningAgreesWithLoopsOverTheNeighbours) {
   int joining = 0, staying = 0;
-  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+  for (std::uint32_t seed = 0; seed < 600; ++seed) {
     Random random(seed);
-    const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    if (seed % 2 == 1) window = withoutWhatStays(window);
     const int ground_bit = random.integer(-1, 40);
     AgreementConfig config;
     config.unknown_share = random.pick<double>({0.0, 0.25, 0.6, 1.0});
     config.join_share = random.pick<double>({0.0, 0.2, 0.4, 0.8});
     config.join_rounds = 1;
+    config.across_gaps = random.chance(0.75);
     BitGrid result = window.suspected;
     growObjects(window, result, ground_bit, config);
     const int size = result.size();
     for (int x = 0; x < size; ++x) {
       for (int y = 0; y < size; ++y) {
-        const bool border = x == 0 || y == 0 || x == size - 1 || y == size - 1;
+        const bool border = x < 2 || y < 2 || x >= size - 2 || y >= size - 2;
         for (int bit = 0; bit < kMaxBits; ++bit) {
           const bool expected =
               !border && joins(window, window.suspected, x, y, bit, ground_bit, config);
@@ -421,8 +466,8 @@ TEST(Agreement, SurfaceNoiseAgreesWithLoopsOverTheNeighbours) {
 EvidenceWindow carThatLeft() {
   EvidenceWindow window = emptyWindow(20);
   set(window.occupied, {0, 19, 0, 19, kGround, kGround});
-  setSuspected(window, {4, 14, 4, 9, kGround + 1, kGround + 6});
-  const Cells inside{6, 12, 6, 7, kGround + 1, kGround + 4};
+  setSuspected(window, {4, 14, 4, 13, kGround + 1, kGround + 6});
+  const Cells inside{6, 12, 6, 11, kGround + 1, kGround + 4};
   for (int x = inside.x_low; x <= inside.x_high; ++x) {
     for (int y = inside.y_low; y <= inside.y_high; ++y) {
       window.suspected.at(x, y) &= ~(lowBits(inside.bit_high + 1) & ~lowBits(inside.bit_low));
@@ -435,7 +480,7 @@ EvidenceWindow carThatLeft() {
 TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
   EvidenceWindow window = carThatLeft();
   AgreementConfig config;
-  const int car = 11 * 6 * 6, inside = 7 * 2 * 4;
+  const int car = 11 * 10 * 6, inside = 7 * 6 * 4;
   EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car);
   config.join_rounds = 0;
   EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside);
@@ -445,7 +490,7 @@ TEST(Agreement, AnObjectGrowsOverItsLeaningCells) {
   EXPECT_LT(after_one, car);
   // Cells that nothing speaks for do not join; the two upon them are then noise of theirs.
   window.leaning = BitGrid(window.leaning.window(), 0);
-  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside - 7 * 2 * 2);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), car - inside - 7 * 6 * 2);
 }
 
 TEST(Agreement, UnknownAndLeaningCellsHaveSharesOfTheirOwn) {
@@ -478,6 +523,85 @@ TEST(Agreement, WhatRestsOnACellThatStaysDoesNotJoin) {
   EXPECT_NE(dynamicCells(window, kGround, {}).at(5, 5), Bits{0});
 }
 
+TEST(Agreement, AnObjectGrowsAcrossGapsWhereNothingStays) {
+  // A far object of which a scan hits every second row of cells, each by one beam.
+  EvidenceWindow window = emptyWindow(9);
+  setSuspected(window, {4, 4, 3, 5, kGround + 2, kGround + 2});
+  const Cells row_above{4, 4, 3, 5, kGround + 4, kGround + 4};
+  set(window.occupied, row_above);
+  set(window.unknown, row_above);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 6);
+  AgreementConfig without;
+  without.across_gaps = false;
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, without)), 3);
+  // Beside a wall the beams say too little.
+  EvidenceWindow at_wall = window;
+  set(at_wall.occupied, {6, 6, 3, 5, kGround + 4, kGround + 4});
+  EXPECT_EQ(countOf(dynamicCells(at_wall, kGround, {})), 3);
+  // The ground is no reason to doubt.
+  set(window.occupied, {0, 8, 0, 8, kGround, kGround});
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 6);
+  // What leans joins as well, if it does not flicker.
+  window.unknown = emptyWindow(9).unknown;
+  set(window.leaning, row_above);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 6);
+  set(window.flickering, row_above);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 3);
+}
+
+TEST(Agreement, FlickeringEdgesAreTakenAway) {
+  // Beams pass a bush: its cells flicker, a few were seen free so often that they are held for
+  // dynamic.
+  EvidenceWindow window = emptyWindow(30);
+  const Cells bush{13, 16, 13, 16, kGround + 1, kGround + 4};
+  set(window.occupied, bush);
+  set(window.leaning, bush);
+  set(window.flickering, bush);
+  setSuspected(window, {13, 14, 14, 15, kGround + 4, kGround + 4});
+  window.strong = window.suspected;
+  AgreementConfig config;
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), 0);
+  config.flicker_share = 1.0;
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, config)), 2);
+  // What its own evidence holds for dynamic is not taken away for some that flicker.
+  setSuspected(window, bush);
+  EXPECT_EQ(countOf(dynamicCells(window, kGround, {})), 4 * 4 * 4);
+}
+
+TEST(Agreement, FlickerAgreesWithLoopsOverTheNeighbours) {
+  int flicker = 0, others = 0;
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Random random(seed);
+    const EvidenceWindow window = randomWindow(random, random.integer(1, 9));
+    const int ground_bit = random.integer(-1, 40);
+    AgreementConfig config;
+    config.flicker_share = random.pick<double>({0.0, 0.3, 0.5, 1.0});
+    config.join_share = random.pick<double>({0.2, 0.4, 0.8});
+    BitGrid result = window.occupied, expected = window.occupied;
+    excludeFlicker(window, result, ground_bit, config);
+    for (int round = 0; round < 3; ++round) {
+      const BitGrid before = expected;
+      for (int x = 1; x + 1 < before.size(); ++x) {
+        for (int y = 1; y + 1 < before.size(); ++y) {
+          for (int bit = 0; bit < kMaxBits; ++bit) {
+            if (!isFlicker(window, before, x, y, bit, ground_bit, config)) continue;
+            expected.at(x, y) &= ~(Bits{1} << bit);
+            ++flicker;
+          }
+        }
+      }
+    }
+    for (int x = 0; x < result.size(); ++x) {
+      for (int y = 0; y < result.size(); ++y) {
+        ASSERT_EQ(result.at(x, y), expected.at(x, y)) << "seed " << seed;
+      }
+    }
+    others += countOf(expected);
+  }
+  EXPECT_GT(flicker, 5000);
+  EXPECT_GT(others, 5000);
+}
+
 TEST(Agreement, CellsInsideTheMarginDoNotDependOnWhatIsOutside) {
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     Random random(seed);
@@ -494,7 +618,7 @@ TEST(Agreement, CellsInsideTheMarginDoNotDependOnWhatIsOutside) {
       return part;
     };
     const EvidenceWindow small{cut(large.occupied), cut(large.suspected), cut(large.strong),
-                               cut(large.leaning), cut(large.unknown)};
+                               cut(large.leaning),  cut(large.unknown),   cut(large.flickering)};
     const BitGrid of_large = dynamicCells(large, kGround, config);
     const BitGrid of_small = dynamicCells(small, kGround, config);
     for (int x = margin; x < margin + inner; ++x) {

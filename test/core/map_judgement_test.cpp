@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "beautymap/agreement.h"
 #include "core/test_scenes.h"
 
 namespace beautymap {
@@ -25,8 +26,10 @@ void changeTile(Tile& tile, test::Random& random) {
   for (std::uint32_t& count : tile.fine_counts) count += random.chance(0.5) ? 1 : 0;
 }
 
-void judge(const MapJudgement& judgement, TileMap& map, const std::vector<ColumnIndex>& tiles) {
-  const std::vector<ColumnIndex> affected = withNeighbours(map, tiles);
+void judge(const MapJudgement& judgement, TileMap& map, const std::vector<ColumnIndex>& tiles,
+           const Config& config) {
+  const std::vector<ColumnIndex> affected =
+      withNeighbours(map, tiles, agreementMargin(config.agreement));
   judgement.judgeEvidence(map, tiles);
   judgement.judgeAgreement(map, affected);
   judgement.segmentGround(map, affected);
@@ -43,15 +46,15 @@ TEST(MapJudgement, JudgingWhatChangedEqualsJudgingEverything) {
     for (int x = -2; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) changeTile(map.tileAt({x, y}), random);
     }
-    judge(judgement, map, tilesOf(map));
+    judge(judgement, map, tilesOf(map), config);
     for (int step = 0; step < 3; ++step) {
       const ColumnIndex changed{random.integer(-2, 1), random.integer(-1, 1)};
       changeTile(map.tileAt(changed), random);
-      judge(judgement, map, {changed});
+      judge(judgement, map, {changed}, config);
       const ColumnWindow window{{-64, -32}, 128};
       const BitGrid dynamic = map.extract(window, &Tile::dynamic, Bits{0});
       const auto ground = map.extract(window, &Tile::static_bins, std::uint16_t{0});
-      judge(judgement, map, tilesOf(map));
+      judge(judgement, map, tilesOf(map), config);
       int dynamic_columns = 0;
       forEachColumn(map, window, [&](int x, int y, const Tile& tile, std::size_t column) {
         ASSERT_EQ(dynamic.at(x, y), tile.dynamic[column]) << "seed " << seed;
@@ -99,9 +102,9 @@ TEST(MapJudgement, CountsTheGroundPointsOfRunsAsPointByPoint) {
 TEST(MapJudgement, NeighboursAreTheExistingTilesAroundEachOnce) {
   TileMap map(1);
   for (int x = 0; x < 4; ++x) map.tileAt({x, 0});
-  EXPECT_EQ(withNeighbours(map, {{0, 0}, {1, 0}}).size(), 3U);
-  EXPECT_EQ(withNeighbours(map, {{3, 0}}).size(), 2U);
-  EXPECT_TRUE(withNeighbours(map, {}).empty());
+  EXPECT_EQ(withNeighbours(map, {{0, 0}, {1, 0}}, 21).size(), 3U);
+  EXPECT_EQ(withNeighbours(map, {{3, 0}}, 21).size(), 2U);
+  EXPECT_TRUE(withNeighbours(map, {}, 21).empty());
   EXPECT_EQ(tilesOf(map).size(), 4U);
 }
 
