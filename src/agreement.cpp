@@ -61,10 +61,13 @@ void excludeCells(BitGrid& cells, const BitGrid& excluded) {
 /// looked at again.
 using ColumnFlags = ColumnGrid<std::uint8_t>;
 
-/// Sets the flags of a column of the inside and of those around it.
+/// Sets the flags of a column and of those around it.
 void mark(ColumnFlags& flags, int x, int y, int reach) {
-  for (int dx = -reach; dx <= reach; ++dx) {
-    for (int dy = -reach; dy <= reach; ++dy) flags.at(x + dx, y + dy) = 1;
+  const int last = flags.size() - 1;
+  for (int nx = std::max(0, x - reach); nx <= std::min(last, x + reach); ++nx) {
+    for (int ny = std::max(0, y - reach); ny <= std::min(last, y + reach); ++ny) {
+      flags.at(nx, ny) = 1;
+    }
   }
 }
 
@@ -93,14 +96,17 @@ BitGrid stayingCells(const EvidenceWindow& window, const BitGrid& dynamic) {
   return staying;
 }
 
-/// Those of some leaning and unknown cells of one column that join dynamic ones within two cells.
-Bits joiningAcrossGaps(Bits cells, const EvidenceWindow& window, const BitGrid& dynamic, int x,
-                       int y, int ground_bit, const AgreementConfig& config) {
-  cells &= ~dynamic.at(x, y);
-  if (cells == 0) return 0;
+/// The leaning and unknown cells of one column that join dynamic ones within two cells, where
+/// nothing stays within two.
+Bits joiningAcrossGaps(const EvidenceWindow& window, const BitGrid& staying, const BitGrid& dynamic,
+                       int x, int y, int ground_bit, const AgreementConfig& config) {
   const Bits counted = ~lowBits(ground_bit + 1);
+  const Bits leaning = window.leaning.at(x, y) & ~window.flickering.at(x, y);
+  Bits cells = (leaning | window.unknown.at(x, y)) & ~dynamic.at(x, y) & counted;
+  if (cells != 0) cells &= anyWithinTwo(dynamic, x, y, counted);
+  if (cells != 0) cells &= ~anyWithinTwo(staying, x, y, counted);
   Bits joining = 0;
-  for (Bits rest = cells & anyWithinTwo(dynamic, x, y, counted); rest != 0; rest &= rest - 1) {
+  for (Bits rest = cells; rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
     int dynamic_count = 0, occupied_count = -1;  // without the cell itself
     for (int dx = -2; dx <= 2; ++dx) {
@@ -233,12 +239,11 @@ BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const Agreem
 
 BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
   BitGrid floors(window.occupied.window(), 0);
-  BitGrid surfaces = floors;
+  BitGrid surfaces = stayingCells(window, window.suspected);
   for (int x = 0; x < floors.size(); ++x) {
     for (int y = 0; y < floors.size(); ++y) {
-      const Bits staying = window.occupied.at(x, y) & ~window.suspected.at(x, y) &
-                           ~window.leaning.at(x, y) & ~window.unknown.at(x, y);
-      surfaces.at(x, y) = staying & ~(staying >> 1) & ~lowBits(ground_bit + 1);
+      Bits& cells = surfaces.at(x, y);
+      cells &= ~(cells >> 1) & ~lowBits(ground_bit + 1);
     }
   }
   for (int x = 1; x + 1 < floors.size(); ++x) {
@@ -255,37 +260,31 @@ BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const Agreement
 
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
-  if (dynamic.isAll(0)) return;
   struct Column {
     int x, y;
-    Bits across_gaps;  ///< cells around which nothing stays
     Bits joining;
   };
-  const Bits counted = ~lowBits(ground_bit + 1);
-  const BitGrid staying = stayingCells(window, dynamic);
   std::vector<Column> growing;  // the columns that can
-  for (int x = 2; x + 2 < dynamic.size(); ++x) {
-    for (int y = 2; y + 2 < dynamic.size(); ++y) {
-      const Bits leaning = window.leaning.at(x, y);
-      const Bits cells = (leaning | window.unknown.at(x, y)) & ~dynamic.at(x, y);
-      if (cells == 0) continue;
-      Bits across_gaps = 0;
-      if (config.across_gaps) {
-        across_gaps = cells & ~(leaning & window.flickering.at(x, y)) & counted &
-                      ~anyWithinTwo(staying, x, y, counted);
-      }
-      growing.push_back({x, y, across_gaps, 0});
+  ColumnFlags near_change(dynamic.window(), 0);
+  for (int x = 0; x < dynamic.size(); ++x) {
+    for (int y = 0; y < dynamic.size(); ++y) {
+      if (dynamic.at(x, y) != 0) mark(near_change, x, y, 2);
+      const Bits cells = (window.leaning.at(x, y) | window.unknown.at(x, y)) & ~dynamic.at(x, y);
+      const bool inside = std::min(x, y) >= 2 && std::max(x, y) < dynamic.size() - 2;
+      if (cells != 0 && inside) growing.push_back({x, y, 0});
     }
   }
-  ColumnFlags near_change(dynamic.window(), 1);
+  const BitGrid staying = stayingCells(window, dynamic);
   for (int round = 0; round < config.join_rounds; ++round) {
     Bits any = 0;
     for (Column& column : growing) {
+      const int x = column.x, y = column.y;
       column.joining = 0;
-      if (near_change.at(column.x, column.y) == 0) continue;
-      column.joining = joiningInColumn(window, dynamic, column.x, column.y, ground_bit, config) |
-                       joiningAcrossGaps(column.across_gaps, window, dynamic, column.x, column.y,
-                                         ground_bit, config);
+      if (near_change.at(x, y) == 0) continue;
+      column.joining = joiningInColumn(window, dynamic, x, y, ground_bit, config);
+      if (config.across_gaps) {
+        column.joining |= joiningAcrossGaps(window, staying, dynamic, x, y, ground_bit, config);
+      }
       any |= column.joining;
     }
     if (any == 0) break;

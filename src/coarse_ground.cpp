@@ -16,16 +16,19 @@ float medianOf(std::vector<float>& values) {
   return 0.5F * (*middle + *std::max_element(values.begin(), middle));
 }
 
-/// Puts the heights of the columns around one into a vector. @return of how many columns
-int gather(const HeightGrid& lowest, int x, int y, int radius, std::vector<float>& heights) {
+/// Of a wide square every second column of every second row is enough for a quantile.
+constexpr int kWideStep = 2;
+
+/// Puts the heights of the columns around one into a vector.
+void gather(const HeightGrid& lowest, int x, int y, int radius, int step,
+            std::vector<float>& heights) {
   heights.clear();
-  for (int dx = -radius; dx <= radius; ++dx) {
-    for (int dy = -radius; dy <= radius; ++dy) {
+  for (int dx = -radius; dx <= radius; dx += step) {
+    for (int dy = -radius; dy <= radius; dy += step) {
       const float height = lowest.at(x + dx, y + dy);
       if (height != Tile::kNoHeight && (dx != 0 || dy != 0)) heights.push_back(height);
     }
   }
-  return (2 * radius + 1) * (2 * radius + 1) - 1;
 }
 
 bool enoughNeighbours(const std::vector<float>& neighbours, int possible,
@@ -78,12 +81,14 @@ int coarseGroundMargin(const CoarseGroundConfig& config) {
 
 GroundEstimate coarseGroundAt(const HeightGrid& lowest, int x, int y,
                               std::vector<float>& neighbours, const CoarseGroundConfig& config) {
-  const int possible = gather(lowest, x, y, config.radius, neighbours);
+  const int side = 2 * config.radius + 1;
+  const int possible = side * side - 1;
+  gather(lowest, x, y, config.radius, 1, neighbours);
   const float own = lowest.at(x, y);
   if (config.wide_radius == 0 || enoughNeighbours(neighbours, possible, config)) {
     return coarseGroundOf(own, neighbours, possible, config);
   }
-  gather(lowest, x, y, config.wide_radius, neighbours);
+  gather(lowest, x, y, config.wide_radius, kWideStep, neighbours);
   if (neighbours.empty()) return {own, false};
   const auto last = static_cast<double>(neighbours.size() - 1);
   const auto low = neighbours.begin() + static_cast<std::ptrdiff_t>(config.wide_quantile * last);
