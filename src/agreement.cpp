@@ -96,6 +96,12 @@ BitGrid stayingCells(const EvidenceWindow& window, const BitGrid& dynamic) {
   return staying;
 }
 
+/// Whether a leaning or unknown cell joins: so many of its occupied neighbours are dynamic.
+bool joins(bool leans, int dynamic, int occupied, const AgreementConfig& config) {
+  const double share = leans ? config.join_share : config.unknown_share;
+  return dynamic > 0 && dynamic >= share * occupied;
+}
+
 /// The leaning and unknown cells of one column that join dynamic ones within two cells, where
 /// nothing stays within two.
 Bits joiningAcrossGaps(const EvidenceWindow& window, const BitGrid& staying, const BitGrid& dynamic,
@@ -116,8 +122,7 @@ Bits joiningAcrossGaps(const EvidenceWindow& window, const BitGrid& staying, con
       }
     }
     const bool leans = (window.leaning.at(x, y) & lowestBit(rest)) != 0;
-    const double share = leans ? config.join_share : config.unknown_share;
-    if (dynamic_count > 0 && dynamic_count >= share * occupied_count) joining |= lowestBit(rest);
+    if (joins(leans, dynamic_count, occupied_count, config)) joining |= lowestBit(rest);
   }
   return joining;
 }
@@ -138,10 +143,9 @@ Bits joiningInColumn(const EvidenceWindow& window, const BitGrid& dynamic, int x
   Bits joining = 0;
   for (Bits rest = (leaning | unknown) & near & ~(staying << 1); rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
-    const int count = countAround(dynamic_around, bit, counted);
     const bool leans = (leaning >> bit & 1) != 0;
-    const double share = leans ? config.join_share : config.unknown_share;
-    if (count > 0 && count >= share * countAround(occupied, bit, counted)) {
+    if (joins(leans, countAround(dynamic_around, bit, counted), countAround(occupied, bit, counted),
+              config)) {
       joining |= lowestBit(rest);
     }
   }

@@ -102,9 +102,7 @@ void estimateCoarseGround(TileMap& map, const CoarseGroundConfig& config) {
     return;
   }
   map.forEachTile([&](ColumnIndex index, Tile& tile) {
-    const int margin = coarseGroundMargin(config);
-    const ColumnIndex corner{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin};
-    const ColumnWindow window{corner, Tile::kSide + 2 * margin};
+    const ColumnWindow window = TileMap::windowOf(index, 1, coarseGroundMargin(config));
     estimateTile(map.extract(window, &Tile::lowest, Tile::kNoHeight), tile, config);
   });
 }

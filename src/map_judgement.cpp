@@ -35,9 +35,7 @@ ColumnWindow windowOf(const std::vector<ColumnIndex>& tiles, int margin) {
     low = {std::min(low.x, tile.x), std::min(low.y, tile.y)};
     high = {std::max(high.x, tile.x), std::max(high.y, tile.y)};
   }
-  const int side = 1 + std::max(high.x - low.x, high.y - low.y);
-  return {{low.x * Tile::kSide - margin, low.y * Tile::kSide - margin},
-          side * Tile::kSide + 2 * margin};
+  return TileMap::windowOf(low, 1 + std::max(high.x - low.x, high.y - low.y), margin);
 }
 
 }  // namespace

@@ -117,9 +117,8 @@ void OnlineMap::updateGround() {
 void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
   const CoarseGroundConfig& config = config_.coarse_ground;
   const int margin = coarseGroundMargin(config);
-  const HeightGrid lowest = map_.extract(
-      {{index.x * Tile::kSide - margin, index.y * Tile::kSide - margin}, Tile::kSide + 2 * margin},
-      &Tile::lowest, Tile::kNoHeight);
+  const HeightGrid lowest =
+      map_.extract(TileMap::windowOf(index, 1, margin), &Tile::lowest, Tile::kNoHeight);
   const float below = judgement_.belowGround();
   const auto anchor = [&](std::size_t column, float ground) {
     if (anchorColumn(tile, column, ground - below, config_.online.ground_drift, config_)) {

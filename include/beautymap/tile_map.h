@@ -89,6 +89,12 @@ class TileMap {
     return ((column.x & (Tile::kSide - 1)) << Tile::kShift) | (column.y & (Tile::kSide - 1));
   }
 
+  /// The columns of a square of tiles, from its first one on, and so many around them.
+  static ColumnWindow windowOf(ColumnIndex first_tile, int tiles, int margin) {
+    return {{first_tile.x * Tile::kSide - margin, first_tile.y * Tile::kSide - margin},
+            tiles * Tile::kSide + 2 * margin};
+  }
+
   Tile& tileAt(ColumnIndex tile);
   void erase(ColumnIndex tile) { tiles_.erase(keyOf(tile)); }
   const Tile* findTile(ColumnIndex tile) const;
