@@ -6,11 +6,9 @@ import json
 import pathlib
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import numpy
@@ -107,12 +105,20 @@ class Tools(unittest.TestCase):
 
     def test_what_rosbag_record_wrote_is_cleaned(self):
         recorded = self.folder / "recorded.bag"
-        recorder = subprocess.Popen(["rosbag", "record", "-q", "-O", str(recorded), "/cloud", "/tf"])
-        time.sleep(4.0)
-        subprocess.run(["rosbag", "play", "-q", "-d", "2", str(self.bag)], check=True, timeout=120)
-        time.sleep(1.0)
-        recorder.send_signal(signal.SIGINT)
-        recorder.wait(timeout=60)
+        # Nothing here waits for a while: the recorder ends by itself when it has all, as `rosbag
+        # record` does not wait for it when interrupted, and the player stays until then, as what
+        # the recorder has not read yet goes with it.
+        recorder = subprocess.Popen(["rosbag", "record", "-q", "--limit", "60", "-O", str(recorded),
+                                     "/cloud", "/tf"])
+        player = subprocess.Popen(["rosbag", "play", "-q", "-k", "--wait-for-subscribers",
+                                   f"--bags={self.bag}", "--topics", "/cloud", "/tf"],
+                                  stdout=subprocess.DEVNULL)
+        try:
+            recorder.wait(timeout=120)
+        finally:
+            for process in (player, recorder):
+                process.terminate()
+                process.wait()
         done = run("replay", recorded, "--output", self.folder / "from_recorded")
         self.assertEqual(done.returncode, 0, done.stderr)
         report = json.loads((self.folder / "from_recorded/report.json").read_text())
