@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "beautymap/evidence.h"
@@ -57,19 +56,54 @@ void excludeCells(BitGrid& cells, const BitGrid& excluded) {
   }
 }
 
-/// Columns of which something depends on what changed in the last round; the others need not be
-/// looked at again.
-using ColumnFlags = ColumnGrid<std::uint8_t>;
+/// Cells of one column.
+struct ColumnCells {
+  int x, y;
+  Bits cells;
+};
 
-/// Sets the flags of a column and of those around it.
-void mark(ColumnFlags& flags, int x, int y, int reach) {
-  const int last = flags.size() - 1;
-  for (int nx = std::max(0, x - reach); nx <= std::min(last, x + reach); ++nx) {
-    for (int ny = std::max(0, y - reach); ny <= std::min(last, y + reach); ++ny) {
-      flags.at(nx, ny) = 1;
+/// Columns of which something depends on what changed, each once; the others need not be looked at
+/// again. None lies nearer to the window's border than `border` columns.
+class ColumnQueue {
+ public:
+  ColumnQueue(const ColumnWindow& window, int border)
+      : waits_(window, 0), first_(border), last_(window.size - 1 - border) {}
+
+  /// Adds a column and those that lie around it.
+  void addAround(int x, int y, int reach) {
+    for (int nx = std::max(first_, x - reach); nx <= std::min(last_, x + reach); ++nx) {
+      for (int ny = std::max(first_, y - reach); ny <= std::min(last_, y + reach); ++ny) {
+        if (waits_.at(nx, ny) != 0) continue;
+        waits_.at(nx, ny) = 1;
+        columns_.push_back({nx, ny});
+      }
     }
   }
-}
+  void addAroundSet(const BitGrid& grid, int reach) {
+    for (int x = 0; x < grid.size(); ++x) {
+      for (int y = 0; y < grid.size(); ++y) {
+        if (grid.at(x, y) != 0) addAround(x, y, reach);
+      }
+    }
+  }
+  /// Empties the queue: what f(x, y) finds in each of its columns, without those where it is none.
+  template <typename F>
+  std::vector<ColumnCells> find(F f) {
+    std::vector<ColumnCells> found;
+    for (const ColumnIndex column : columns_) {
+      waits_.at(column.x, column.y) = 0;
+      const Bits cells = f(column.x, column.y);
+      if (cells != 0) found.push_back({column.x, column.y, cells});
+    }
+    columns_.clear();
+    return found;
+  }
+
+ private:
+  ColumnGrid<std::uint8_t> waits_;
+  std::vector<ColumnIndex> columns_;
+  int first_, last_;
+};
 
 constexpr int kFlickerRounds = 3;  ///< edges are a few cells thick
 
@@ -264,59 +298,37 @@ BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const Agreement
 
 void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                  const AgreementConfig& config) {
-  struct Column {
-    int x, y;
-    Bits joining;
-  };
-  std::vector<Column> growing;  // the columns that can
-  ColumnFlags near_change(dynamic.window(), 0);
-  for (int x = 0; x < dynamic.size(); ++x) {
-    for (int y = 0; y < dynamic.size(); ++y) {
-      if (dynamic.at(x, y) != 0) mark(near_change, x, y, 2);
-      const Bits cells = (window.leaning.at(x, y) | window.unknown.at(x, y)) & ~dynamic.at(x, y);
-      const bool inside = std::min(x, y) >= 2 && std::max(x, y) < dynamic.size() - 2;
-      if (cells != 0 && inside) growing.push_back({x, y, 0});
-    }
-  }
-  const BitGrid staying = stayingCells(window, dynamic);
+  const BitGrid staying = config.across_gaps ? stayingCells(window, dynamic) : BitGrid();
+  ColumnQueue near_change(dynamic.window(), 2);
+  near_change.addAroundSet(dynamic, 2);
   for (int round = 0; round < config.join_rounds; ++round) {
-    Bits any = 0;
-    for (Column& column : growing) {
-      const int x = column.x, y = column.y;
-      column.joining = 0;
-      if (near_change.at(x, y) == 0) continue;
-      column.joining = joiningInColumn(window, dynamic, x, y, ground_bit, config);
+    const std::vector<ColumnCells> joining = near_change.find([&](int x, int y) {
+      Bits cells = joiningInColumn(window, dynamic, x, y, ground_bit, config);
       if (config.across_gaps) {
-        column.joining |= joiningAcrossGaps(window, staying, dynamic, x, y, ground_bit, config);
+        cells |= joiningAcrossGaps(window, staying, dynamic, x, y, ground_bit, config);
       }
-      any |= column.joining;
-    }
-    if (any == 0) break;
-    near_change.reset(dynamic.window(), 0);
-    for (const Column& column : growing) {
-      if (column.joining == 0) continue;
-      dynamic.at(column.x, column.y) |= column.joining;
-      mark(near_change, column.x, column.y, 2);
+      return cells;
+    });
+    if (joining.empty()) break;
+    for (const ColumnCells& column : joining) {
+      dynamic.at(column.x, column.y) |= column.cells;
+      near_change.addAround(column.x, column.y, 2);
     }
   }
 }
 
 void excludeFlicker(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
                     const AgreementConfig& config) {
-  ColumnFlags near_change(dynamic.window(), 1);
+  ColumnQueue near_change(dynamic.window(), 1);
+  near_change.addAroundSet(dynamic, 0);
   for (int round = 0; round < kFlickerRounds; ++round) {
-    ColumnFlags changes(dynamic.window(), 0);
-    BitGrid flicker(dynamic.window(), 0);
-    for (int x = 1; x + 1 < dynamic.size(); ++x) {
-      for (int y = 1; y + 1 < dynamic.size(); ++y) {
-        if (near_change.at(x, y) == 0) continue;
-        flicker.at(x, y) = flickerInColumn(window, dynamic, x, y, ground_bit, config);
-        if (flicker.at(x, y) != 0) mark(changes, x, y, 1);
-      }
+    const std::vector<ColumnCells> flicker = near_change.find(
+        [&](int x, int y) { return flickerInColumn(window, dynamic, x, y, ground_bit, config); });
+    if (flicker.empty()) break;
+    for (const ColumnCells& column : flicker) {
+      dynamic.at(column.x, column.y) &= ~column.cells;
+      near_change.addAround(column.x, column.y, 1);
     }
-    if (changes.isAll(0)) break;
-    excludeCells(dynamic, flicker);
-    near_change = std::move(changes);
   }
 }
 
