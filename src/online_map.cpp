@@ -97,20 +97,15 @@ void OnlineMap::addLowest() {
 void OnlineMap::updateGround() {
   // Not to the wide radius: a quantile of so many columns hardly moves with one of them.
   const int r = config_.coarse_ground.radius;
-  std::vector<ColumnIndex> stale;
   for (const ColumnIndex column : lowered_) {
-    for (int dx = -r; dx <= r; ++dx) {
-      for (int dy = -r; dy <= r; ++dy) {
-        const ColumnIndex near{column.x + dx, column.y + dy};
-        const ColumnIndex index = TileMap::tileOf(near);
-        Tile* tile = map_.findTile(index);
-        if (tile == nullptr) continue;
-        if (tile->stale_ground.none()) stale.push_back(index);
-        tile->stale_ground.set(static_cast<std::size_t>(TileMap::indexInTile(near)));
-      }
-    }
+    forEachColumn(map_, {{column.x - r, column.y - r}, 2 * r + 1},
+                  [](int, int, Tile& tile, std::size_t near) { tile.stale_ground[near] = true; });
   }
   lowered_.clear();
+  std::vector<ColumnIndex> stale;
+  map_.forEachTile([&](ColumnIndex index, const Tile& tile) {
+    if (tile.stale_ground.any()) stale.push_back(index);
+  });
   for (const ColumnIndex index : stale) estimateStaleGround(index, *map_.findTile(index));
 }
 
