@@ -209,6 +209,7 @@ constexpr char kDefault[] = "default";
 
 void beamsAndCells(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"beams", "res_g_cm"})->Unit(benchmark::kMillisecond);
+  benchmark->MeasureProcessCPUTime();  // of both threads, where there are two
   for (const int beams : {16, 32, 64, 128}) {
     for (const int res_g_cm : {25, 50, 100, 200}) benchmark->Args({beams, res_g_cm});
   }

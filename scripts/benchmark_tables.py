@@ -17,7 +17,7 @@ def stage_times(path):
     benchmarks without these two."""
     stages, others = {}, {}
     for result in json.loads(path.read_text())["benchmarks"]:
-        name, *arguments = result["name"].split("/")
+        name, *arguments = result["name"].replace("/process_time", "").split("/")
         name = name.replace("<kDefault>", ", default").replace("<kPaper>", ", paper_kitti")
         values = dict(argument.split(":") for argument in arguments)
         if "beams" in values:

@@ -8,6 +8,7 @@
 
 #include "beautymap/agreement.h"
 #include "beautymap/fine_ground.h"
+#include "beautymap/two_threads.h"
 
 namespace beautymap {
 
@@ -87,27 +88,36 @@ void MapJudgement::judgeEvidence(Tile& tile, std::size_t column, Bits cells) con
 
 std::vector<ColumnIndex> MapJudgement::judgeAgreement(TileMap& map,
                                                       std::vector<ColumnIndex> tiles) const {
-  std::vector<ColumnIndex> changed;
   std::sort(tiles.begin(), tiles.end(), [](ColumnIndex a, ColumnIndex b) {
     return std::make_tuple(blockOf(a), a.x, a.y) < std::make_tuple(blockOf(b), b.x, b.y);
   });
-  for (auto begin = tiles.begin(); begin != tiles.end();) {
-    const auto end = std::find_if(
-        begin, tiles.end(), [&](ColumnIndex tile) { return blockOf(tile) != blockOf(*begin); });
-    const BitGrid dynamic = dynamicCellsOf(map, {begin, end});
-    for (; begin != end; ++begin) {
-      Tile& tile = *map.findTile(*begin);
-      const auto before = tile.dynamic;
-      const ColumnIndex corner = dynamic.window().corner;
-      const int x0 = begin->x * Tile::kSide - corner.x, y0 = begin->y * Tile::kSide - corner.y;
-      for (int x = 0; x < Tile::kSide; ++x) {
-        for (int y = 0; y < Tile::kSide; ++y) {
-          tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] =
-              dynamic.at(x0 + x, y0 + y);
-        }
+  std::vector<std::vector<ColumnIndex>> blocks;
+  for (const ColumnIndex tile : tiles) {
+    if (blocks.empty() || blockOf(blocks.back().front()) != blockOf(tile)) blocks.emplace_back();
+    blocks.back().push_back(tile);
+  }
+  std::vector<std::vector<ColumnIndex>> changed_of(blocks.size());
+  inTwoThreads(blocks.size(), [&](std::size_t i) { changed_of[i] = judgeBlock(map, blocks[i]); });
+  std::vector<ColumnIndex> changed;
+  for (const auto& block : changed_of) changed.insert(changed.end(), block.begin(), block.end());
+  return changed;
+}
+
+std::vector<ColumnIndex> MapJudgement::judgeBlock(TileMap& map,
+                                                  const std::vector<ColumnIndex>& block) const {
+  const BitGrid dynamic = dynamicCellsOf(map, block);
+  const ColumnIndex corner = dynamic.window().corner;
+  std::vector<ColumnIndex> changed;
+  for (const ColumnIndex index : block) {
+    Tile& tile = *map.findTile(index);
+    const auto before = tile.dynamic;
+    const int x0 = index.x * Tile::kSide - corner.x, y0 = index.y * Tile::kSide - corner.y;
+    for (int x = 0; x < Tile::kSide; ++x) {
+      for (int y = 0; y < Tile::kSide; ++y) {
+        tile.dynamic[static_cast<std::size_t>(x << Tile::kShift | y)] = dynamic.at(x0 + x, y0 + y);
       }
-      if (tile.dynamic != before) changed.push_back(*begin);
     }
+    if (tile.dynamic != before) changed.push_back(index);
   }
   return changed;
 }

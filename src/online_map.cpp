@@ -3,8 +3,6 @@
 #include "beautymap/online_map.h"
 
 #include <algorithm>
-#include <functional>
-#include <future>
 #include <tuple>
 #include <utility>
 
@@ -12,6 +10,7 @@
 #include "beautymap/binary_encoding.h"
 #include "beautymap/coarse_ground.h"
 #include "beautymap/ground_anchor.h"
+#include "beautymap/two_threads.h"
 
 namespace beautymap {
 namespace {
@@ -106,7 +105,8 @@ void OnlineMap::updateGround() {
   map_.forEachTile([&](ColumnIndex index, const Tile& tile) {
     if (tile.stale_ground.any()) stale.push_back(index);
   });
-  for (const ColumnIndex index : stale) estimateStaleGround(index, *map_.findTile(index));
+  inTwoThreads(stale.size(),
+               [&](std::size_t i) { estimateStaleGround(stale[i], *map_.findTile(stale[i])); });
 }
 
 void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
@@ -124,6 +124,7 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     }
   };
   std::bitset<Tile::kColumns> has_ground;
+  std::vector<float> neighbours;
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
     if (tile.lowest[column] == Tile::kNoHeight ||
         hangsOverFreeSpace(tile, column, tile.lowest[column], config_)) {
@@ -133,7 +134,7 @@ void OnlineMap::estimateStaleGround(ColumnIndex index, Tile& tile) {
     if (!tile.stale_ground[column]) continue;
     const int x = static_cast<int>(column) >> Tile::kShift;
     const int y = static_cast<int>(column) & (Tile::kSide - 1);
-    const float ground = coarseGroundAt(lowest, x + margin, y + margin, neighbours_, config).height;
+    const float ground = coarseGroundAt(lowest, x + margin, y + margin, neighbours, config).height;
     // A column that was seen through a gap, beside others of which only a ceiling was seen yet,
     // must not be lifted over its points: what lies below its bits is in no cell.
     anchor(column, std::min(ground, tile.lowest[column] + below));
@@ -200,7 +201,6 @@ void OnlineMap::addSeenFree() {
   const int height = static_cast<int>(config_.online.free_height / config_.matrix.res_h);
   const Bits remembered =
       lowBits(std::min(config_.matrix.bits_below + height, config_.matrix.n_bit));
-  // Two halves of the columns, for a thread each.
   const int middle = hits_.size() / 2;
   for (Half& half : halves_) half.candidates.reset(hits_.window(), 0);
   forEachColumn(std::as_const(map_), hits_.window(),
@@ -210,13 +210,11 @@ void OnlineMap::addSeenFree() {
                       (tile.occupied[column] | remembered) & ~hits_.at(x, y);
                 });
   clock.lap("matrix_comparison");
-  const auto look = [&](Half& half) {
+  inTwoThreads(halves_.size(), [&](std::size_t i) {
+    Half& half = halves_[i];
     half.seen_free = cellsSeenFree(beams_, half.candidates, ground_, placed_, config_.matrix,
                                    config_.visibility, std::move(half.seen_free), &half.few);
-  };
-  auto other = std::async(std::launch::async, look, std::ref(halves_[0]));
-  look(halves_[1]);
-  other.get();
+  });
   clock.lap("beam_visibility");
   addEvidence([&](int x, int y) {
     const Half& half = halves_[x < middle ? 0 : 1];
@@ -239,9 +237,9 @@ void OnlineMap::settle() {
   for (const ColumnIndex index : judgement_.judgeAgreement(map_, affected)) {
     ++map_.findTile(index)->revision;
   }
-  for (const ColumnIndex index : affected) {
-    if (judgement_.segmentGround(map_, {index})) ++map_.findTile(index)->revision;
-  }
+  inTwoThreads(affected.size(), [&](std::size_t i) {
+    if (judgement_.segmentGround(map_, {affected[i]})) ++map_.findTile(affected[i])->revision;
+  });
 }
 
 void OnlineMap::findDynamicInScan() {

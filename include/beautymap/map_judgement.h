@@ -72,6 +72,8 @@ class MapJudgement {
   /// The bit of a column's ground cell, which only the fine ground segmentation divides; -1 for an
   /// empty column.
   int groundBit(const Tile& tile, std::size_t column) const;
+  /// judgeAgreement for tiles beside each other.
+  std::vector<ColumnIndex> judgeBlock(TileMap& map, const std::vector<ColumnIndex>& block) const;
   /// Tile::dynamic as judgeAgreement finds it for some tiles; valid in these.
   BitGrid dynamicCellsOf(const TileMap& map, const std::vector<ColumnIndex>& tiles) const;
   /// Whether anything can depend on the counts of a column: the published method divides a ground

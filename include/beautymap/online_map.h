@@ -28,7 +28,7 @@ namespace beautymap {
 ///                                               known before and from the scan itself
 ///   addSeenFree()   what that scan saw free; may follow after the classes are published
 ///
-/// Memory grows with the mapped area. Not thread-safe.
+/// Memory grows with the mapped area. Uses a second thread itself, but is not thread-safe.
 class OnlineMap {
  public:
   /// @throws ConfigError when the configuration contradicts itself, or is without evidence or
@@ -100,7 +100,6 @@ class OnlineMap {
   std::array<Half, 2> halves_;
   EvidenceWindow live_;
   std::vector<PointClass> classes_;
-  std::vector<float> neighbours_;  ///< of one column
   /// Columns whose lowest height fell, or whose ground was seen to be none.
   std::vector<ColumnIndex> lowered_;
 };
