@@ -158,8 +158,9 @@ def running(parameters=None, nodelet=False, launch=None, prepare=None):
 
 
 class Player:
-    """`rosbag play`, which on a busy machine must lose nothing: it begins when its messages have
-    subscribers, and lives on at the end, as what a subscriber has not read yet goes with it."""
+    """`rosbag play`, which on a busy machine must lose nothing: it begins when the node listens to
+    the bag's clouds (the last that it subscribes to) and its messages have subscribers, and lives
+    on at the end, as what a subscriber has not read yet goes with it."""
 
     process = None
 
@@ -170,8 +171,9 @@ class Player:
         with rosbag.Bag(str(bag)) as messages:
             end = min(messages.get_end_time(), messages.get_start_time() + duration)
             topics = messages.get_type_and_topic_info().topics
-        _, subscribers, _ = rosgraph.Master("/online_test").getSystemState()
-        heard = [topic for topic, nodes in subscribers if topic in topics and NODE in nodes]
+        clouds = {name for name, of in topics.items() if of.msg_type == "sensor_msgs/PointCloud2"}
+        wait_for(lambda: clouds <= cls.heard_by_node(), f"the node listens to {clouds}")
+        heard = cls.heard_by_node() & set(topics)
         clock = []
         subscriber = rospy.Subscriber("/clock", Clock, lambda now: clock.append(now.clock.to_sec()))
         cls.process = subprocess.Popen(
@@ -182,6 +184,11 @@ class Player:
                  f"the end of {bag}", timeout=300)
         assert cls.process.poll() is None, f"rosbag play ended by itself: {bag}"
         subscriber.unregister()
+
+    @staticmethod
+    def heard_by_node():
+        _, subscribers, _ = rosgraph.Master("/online_test").getSystemState()
+        return {topic for topic, nodes in subscribers if NODE in nodes}
 
     @classmethod
     def stop(cls):
