@@ -96,15 +96,18 @@ void OnlineMap::addLowest() {
 void OnlineMap::updateGround() {
   // Not to the wide radius: a quantile of so many columns hardly moves with one of them.
   const int r = config_.coarse_ground.radius;
+  std::vector<ColumnIndex> stale;
   for (const ColumnIndex column : lowered_) {
-    forEachColumn(map_, {{column.x - r, column.y - r}, 2 * r + 1},
-                  [](int, int, Tile& tile, std::size_t near) { tile.stale_ground[near] = true; });
+    const ColumnIndex corner{column.x - r, column.y - r};
+    forEachColumn(map_, {corner, 2 * r + 1}, [&](int x, int y, Tile& tile, std::size_t near) {
+      if (tile.stale_ground[near]) return;
+      if (tile.stale_ground.none()) {
+        stale.push_back(TileMap::tileOf({corner.x + x, corner.y + y}));
+      }
+      tile.stale_ground[near] = true;
+    });
   }
   lowered_.clear();
-  std::vector<ColumnIndex> stale;
-  map_.forEachTile([&](ColumnIndex index, const Tile& tile) {
-    if (tile.stale_ground.any()) stale.push_back(index);
-  });
   inTwoThreads(stale.size(),
                [&](std::size_t i) { estimateStaleGround(stale[i], *map_.findTile(stale[i])); });
 }
