@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sums up the result files of gtest, rosunit and rostest: sum_test_results.py FOLDER
 
-Prints each failed test with the end of what it says and, as the last line, `N passed, M failed` (`, K skipped` if there are
-such). Exit code 1 if any failed or none passed.
+Prints each failed test with the end of what it says and, as the last line, `N passed, M failed`
+(`, K skipped` if there are such). Exit code 1 if any failed or none passed.
 
 A rostest writes two kinds of files: rosunit-NAME.xml with the test cases of its test node NAME, and
 rostest-FILE.xml with one case testNAME for the node as a whole. The second counts only when it
@@ -51,7 +51,8 @@ def sum_up(folder):
             node = name.rpartition(".test")[2]
             if node in nodes:
                 # The second run has overwritten the first one's rosunit-NAME.xml.
-                cases.append((f"{path.name} and {nodes[node]} both use test-name {node}", "failed", ""))
+                clash = f"{path.name} and {nodes[node]} both use test-name {node}"
+                cases.append((clash, "failed", ""))
             nodes[node] = path.name
             details = path.with_name(f"rosunit-{node}.xml")
             known = [outcome for _, outcome, _ in read_cases(details)] if details.exists() else []
