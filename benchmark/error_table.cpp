@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/evaluation.h"
-#include "beautymap/map_cleaner.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "labelled_scans.h"
 
 namespace beautymap {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/cell_size.h"
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_source.h"
+#include "beautymap/matrix/cell_size.h"
 
 namespace beautymap {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/config.h"
-#include "beautymap/map_cleaner.h"
-#include "beautymap/scan.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/config/config.h"
+#include "beautymap/matrix/scan.h"
 #include "simulated_drive.h"
 
 namespace beautymap::benchmarks {

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <cstdio>
 
-#include "beautymap/evaluation.h"
-#include "beautymap/map_cleaner.h"
-#include "beautymap/online_map.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/cleaner/online_map.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "labelled_scans.h"
 
 namespace beautymap {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "beautymap/scan.h"
+#include "beautymap/matrix/scan.h"
 
 namespace beautymap::benchmarks {
 

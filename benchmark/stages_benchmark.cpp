@@ -9,14 +9,14 @@
 #include <tuple>
 #include <vector>
 
-#include "beautymap/beam_visibility.h"
-#include "beautymap/binary_encoding.h"
-#include "beautymap/config.h"
-#include "beautymap/map_cleaner.h"
-#include "beautymap/matrix_comparison.h"
-#include "beautymap/reverse_ray_casting.h"
-#include "beautymap/scan.h"
-#include "beautymap/sight_mask.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/config/config.h"
+#include "beautymap/evidence/beam_visibility.h"
+#include "beautymap/matrix/binary_encoding.h"
+#include "beautymap/matrix/scan.h"
+#include "beautymap/published/matrix_comparison.h"
+#include "beautymap/published/reverse_ray_casting.h"
+#include "beautymap/published/sight_mask.h"
 #include "simulated_drive.h"
 
 namespace beautymap::benchmarks {

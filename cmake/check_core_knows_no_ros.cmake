@@ -16,8 +16,10 @@ if(LIBRARY MATCHES "\\.so$")
   endif()
 endif()
 
-file(GLOB core_files
-  "${SOURCE_DIR}/src/*.cpp" "${SOURCE_DIR}/src/*.h" "${SOURCE_DIR}/include/beautymap/*.h")
+foreach(room base config matrix ground published evidence cleaner evaluation)
+  file(GLOB files "${SOURCE_DIR}/src/${room}/*" "${SOURCE_DIR}/include/beautymap/${room}/*")
+  list(APPEND core_files ${files})
+endforeach()
 foreach(file IN LISTS core_files)
   file(STRINGS "${file}" includes REGEX "^ *# *include *[<\"](${ros}|${layers})/")
   if(includes)

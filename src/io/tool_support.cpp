@@ -11,7 +11,7 @@
 #include <exception>
 #include <iostream>
 
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
 
 namespace beautymap {
 namespace {

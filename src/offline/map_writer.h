@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "beautymap/evaluation.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "beautymap/io/scan_source.h"
-#include "beautymap/map_cleaner.h"
 #include "beautymap/offline/offline_cleaner.h"
 #include "beautymap/offline/pictures.h"
 #include "point_file.h"

@@ -11,12 +11,12 @@
 #include <optional>
 #include <utility>
 
-#include "beautymap/cell_size.h"
+#include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/placed_spool.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_spool.h"
-#include "beautymap/map_cleaner.h"
+#include "beautymap/matrix/cell_size.h"
 #include "map_writer.h"
 #include "scan_pipeline.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../vector_clones.h"
+#include "../base/vector_clones.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {

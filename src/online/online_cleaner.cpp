@@ -9,10 +9,10 @@
 #include <future>
 #include <thread>
 
-#include "beautymap/cell_size.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_conversion.h"
+#include "beautymap/matrix/cell_size.h"
 
 namespace beautymap {
 namespace {

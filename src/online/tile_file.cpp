@@ -9,9 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "beautymap/cell_size.h"
+#include "beautymap/evidence/map_judgement.h"
 #include "beautymap/io/scan_source.h"
-#include "beautymap/map_judgement.h"
 
 namespace beautymap {
 namespace {
@@ -147,7 +146,7 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
   cell_size_ = written.res_g;
   Meaning wanted = meaningOf(config);
   // A session of a room goes on as one, also where the present scans would not say so.
-  if (written.res_g == cellSizeInRoom(config.matrix)) wanted.res_g = written.res_g;
+  if (written.res_g == config.matrix.resInRoom()) wanted.res_g = written.res_g;
   if (std::memcmp(&written, &wanted, sizeof(wanted)) != 0) {
     throw InputError("'" + path +
                      "' was written with other matrix, ground_layer or fine_ground parameters: go "

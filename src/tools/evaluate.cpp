@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/evaluation.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_conversion.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
 #include "beautymap/io/tool_support.h"
 #include "beautymap/offline/offline_cleaner.h"
 

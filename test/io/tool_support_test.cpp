@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
 
 namespace beautymap {
 namespace {

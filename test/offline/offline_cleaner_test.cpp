@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/pcd_stream.h"
-#include "beautymap/map_cleaner.h"
 #include "offline/offline_test_helpers.h"
 
 namespace beautymap {

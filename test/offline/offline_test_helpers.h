@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "beautymap/io/scan_source.h"
-#include "core/test_scenes.h"
+#include "test_scenes.h"
 
 namespace beautymap::test {
 

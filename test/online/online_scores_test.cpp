@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/evaluation.h"
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/cleaner/online_map.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/scan_conversion.h"
-#include "beautymap/map_cleaner.h"
-#include "beautymap/online_map.h"
 #include "beautymap/simulation/simulated_source.h"
 
 namespace beautymap {

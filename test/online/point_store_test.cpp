@@ -6,8 +6,8 @@
 
 #include <set>
 
-#include "core/test_scenes.h"
 #include "io/io_test_helpers.h"
+#include "test_scenes.h"
 
 namespace beautymap {
 namespace {

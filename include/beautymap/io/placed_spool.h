@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "beautymap/io/temporary_file.h"
-#include "beautymap/scan.h"
+#include "beautymap/matrix/scan.h"
 
 namespace beautymap {
 

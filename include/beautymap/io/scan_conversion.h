@@ -7,7 +7,7 @@
 
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/scan_source.h"
-#include "beautymap/scan.h"
+#include "beautymap/matrix/scan.h"
 
 namespace beautymap {
 

@@ -9,11 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "beautymap/config.h"
-#include "beautymap/evaluation.h"
+#include "beautymap/base/stage_times.h"
+#include "beautymap/config/config.h"
+#include "beautymap/evaluation/evaluation.h"
 #include "beautymap/io/scan_source.h"
-#include "beautymap/scan.h"
-#include "beautymap/stage_times.h"
+#include "beautymap/matrix/scan.h"
 
 namespace beautymap {
 

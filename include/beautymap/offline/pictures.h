@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "beautymap/tile_map.h"
+#include "beautymap/matrix/tile_map.h"
 
 namespace beautymap {
 

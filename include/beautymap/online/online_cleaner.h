@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "beautymap/config.h"
+#include "beautymap/cleaner/online_map.h"
+#include "beautymap/config/config.h"
 #include "beautymap/io/scan_source.h"
 #include "beautymap/online/point_store.h"
 #include "beautymap/online/tile_file.h"
-#include "beautymap/online_map.h"
 
 namespace beautymap {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "beautymap/io/copy_runs.h"
-#include "beautymap/scan.h"
-#include "beautymap/tile_map.h"
+#include "beautymap/matrix/scan.h"
+#include "beautymap/matrix/tile_map.h"
 
 namespace beautymap {
 

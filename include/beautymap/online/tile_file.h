@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
+#include "beautymap/matrix/tile_map.h"
 #include "beautymap/online/point_store.h"
-#include "beautymap/tile_map.h"
 
 namespace beautymap {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "beautymap/config.h"
+#include "beautymap/config/config.h"
 
 namespace beautymap {
 

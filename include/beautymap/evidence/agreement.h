@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "beautymap/config/config.h"
+#include "beautymap/matrix/column_grid.h"
+
+namespace beautymap {
+
+/// The cells of a window of the map, by what their own evidence says.
+struct EvidenceWindow {
+  BitGrid occupied;
+  BitGrid suspected;   ///< held for dynamic
+  BitGrid strong;      ///< those of the suspected ones whose evidence is strong
+  BitGrid leaning;     ///< not suspected, but seen free before or after their hits
+  BitGrid unknown;     ///< never seen free, and seldom hit
+  BitGrid flickering;  ///< hit and free in turns, as the edges of what stays are
+};
+
+/// The suspected cells that stand without support: a moving object fills neighbouring cells, an
+/// edge or a leaf does not. A cell is supported when, of the occupied cells among its 26 neighbours
+/// above the ground cell, a share is suspected; strong evidence needs a smaller share.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid unsupportedCells(const EvidenceWindow& window, int ground_bit,
+                         const AgreementConfig& config);
+
+/// The suspected cells that are but the noise of a surface that stays (the ground, a roof, a
+/// table): with noise of ranges and poses some scans hit the cells upon it, and most see them free.
+/// They are up to surface_bits high upon a cell that stays and does not even lean, and right above
+/// them nothing else is suspected in their column and those around: what moves is thicker.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits);
+
+/// The suspected cells that are but the noise of a surface overhead (a ceiling, a roof), which
+/// beams graze: overhead_bits above the ground cell or higher, and nothing is suspected in their
+/// column and those around from surface_bits + 1 to twice surface_bits below and above them. What
+/// moves up there is thicker.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
+
+/// The cells that are a floor above the ground cell: nothing is on them that stays, and
+/// floor_neighbours of the 8 columns around have such a surface within a bit of their height. As
+/// the ground below does, a floor (a deck, a step, a storey's) says nothing about what stands on
+/// it.
+/// @return  for the columns one in from the window's border; no bits at the border
+BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
+
+/// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
+/// object: a share of their occupied neighbours is dynamic, and they do not rest on a cell that
+/// stays (what is seen over the roof of a parked car is no reason to remove the roof). Sparse scans
+/// leave gaps in an object: where nothing stays within two cells, the cells within two are the
+/// neighbours, too. The two columns at the window's border do not change.
+/// @param dynamic  the dynamic cells of the same window
+void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
+                 const AgreementConfig& config);
+
+/// Takes away, from outside to inside, dynamic cells that are but the flickering edges of what
+/// stays (a bush, a fence, a rim): more than flicker_share of the dynamic cells around flickers,
+/// and less than join_share of the occupied ones is dynamic by its own evidence.
+/// @param dynamic  the dynamic cells of the same window; its border does not change
+void excludeFlicker(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
+                    const AgreementConfig& config);
+
+/// How far from its border a window is needed to know the dynamic cells within [columns].
+int agreementMargin(const AgreementConfig& config);
+
+/// The dynamic cells: the suspected ones with support that are no noise, and what joins them round
+/// by round, without flickering edges. Floors count as little as the ground does.
+/// @return  valid for the columns agreementMargin() in from the window's border
+BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config);
+
+}  // namespace beautymap

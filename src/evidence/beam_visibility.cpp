@@ -1,0 +1,389 @@
+// SPDX-FileCopyrightText: 2026 beautymap contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beautymap/evidence/beam_visibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "../base/vector_clones.h"
+
+namespace beautymap {
+namespace {
+
+// Nearer columns span so much of the view that a beam image says little about them.
+constexpr float kNearestColumn = 0.5F;  // [m]
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+
+/// How far a point that a scan measured at a range may be from where it was [m]: one standard
+/// deviation of the scan's pose.
+float poseError(float range, const VisibilityConfig& config) {
+  const auto position = static_cast<float>(config.pose_position);
+  const auto turned = range * static_cast<float>(config.pose_rotation * kRadPerDeg);
+  return std::sqrt(position * position + turned * turned);
+}
+
+/// Where one column of the map stands in the beam image.
+struct ColumnView {
+  int first_azimuth;  ///< pixel, not yet wrapped
+  int last_azimuth;
+  BeamImage::Pixel behind;  ///< greater pixels have beams that passed the column
+  float bottom_slope;       ///< of bit 0, in pixels
+  float bit_slopes;         ///< height of a bit in pixels
+  float more_slopes;        ///< margin below and above a cell in pixels
+
+  int firstSlope(int bit) const { return slopeOf(bit, -more_slopes); }
+  int lastSlope(int bit) const { return slopeOf(bit + 1, more_slopes); }
+
+ private:
+  int slopeOf(int bit, float more) const {
+    return floorToInt(bottom_slope + static_cast<float>(bit) * bit_slopes + more);
+  }
+};
+
+/// Some columns of one row of the window. One array per quantity, of a fixed size: the compiler
+/// then views several columns at a time.
+class ColumnViews {
+ public:
+  bool full() const { return size_ == kCapacity; }
+  void clear() { size_ = 0; }
+  /// @param y       index in the row
+  /// @param y_m     of the column's centre, seen from the sensor [m]
+  /// @param bottom  of its bit 0, from the sensor's height [m]
+  void add(int y, float y_m, float bottom) {
+    y_[size_] = y;
+    y_m_[size_] = y_m;
+    bottom_[size_] = bottom;
+    ++size_;
+  }
+  /// @param x_m  of the row, seen from the sensor [m]
+  BEAUTYMAP_VECTOR_CLONES
+  void view(PixelScale scale, float x_m, const MatrixConfig& matrix) {
+    const auto half_width = 0.5F * static_cast<float>(matrix.res_g);
+    const auto res_h = static_cast<float>(matrix.res_h);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const float y_m = y_m_[i];
+      const float distance = std::sqrt(x_m * x_m + y_m * y_m);
+      const float per_metre = 1.0F / distance;
+      // The directions to the ends of the column's width, seen from the sensor.
+      const float half = half_width * per_metre;
+      first_[i] = scale.azimuthPixel(x_m + half * y_m, y_m - half * x_m);
+      last_[i] = scale.azimuthPixel(x_m - half * y_m, y_m + half * x_m);
+      bottom_slope_[i] = scale.slopePixel(bottom_[i] * per_metre);
+      top_slope_[i] = scale.slopePixel((bottom_[i] + res_h) * per_metre);
+      distance_[i] = distance;
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  int y(std::size_t i) const { return y_[i]; }
+  float distance(std::size_t i) const { return distance_[i]; }
+  /// @param behind_m  what ends so far behind the column's centre has passed it [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m) const {
+    return widerAt(i, beams, behind_m, 0.0F);
+  }
+  /// The same with a margin around each cell of the column.
+  /// @param around_m  [m]
+  ColumnView at(std::size_t i, const BeamImage& beams, float behind_m, float around_m,
+                const MatrixConfig& matrix) const {
+    const float width = last_[i] + turn(i, beams) - first_[i];
+    const float wider = width * around_m / static_cast<float>(matrix.res_g);
+    const float quarter = 0.25F * static_cast<float>(beams.azimuthPixels());
+    ColumnView view = widerAt(i, beams, behind_m, std::min(quarter, wider));
+    view.more_slopes = view.bit_slopes * around_m / static_cast<float>(matrix.res_h);
+    return view;
+  }
+
+ private:
+  /// What is to be added to the last azimuth of a column that lies across the first pixel.
+  float turn(std::size_t i, const BeamImage& beams) const {
+    return last_[i] < first_[i] ? static_cast<float>(beams.azimuthPixels()) : 0.0F;
+  }
+  ColumnView widerAt(std::size_t i, const BeamImage& beams, float behind_m, float pixels) const {
+    return {floorToInt(first_[i] - pixels),
+            floorToInt(last_[i] + turn(i, beams) + pixels),
+            BeamImage::limitFor(distance_[i] + behind_m),
+            bottom_slope_[i],
+            top_slope_[i] - bottom_slope_[i],
+            0.0F};
+  }
+
+  static constexpr std::size_t kCapacity = 64;
+  template <typename T>
+  using Values = std::array<T, kCapacity>;
+
+  std::size_t size_ = 0;
+  Values<int> y_;
+  Values<float> y_m_, bottom_, distance_, first_, last_, bottom_slope_, top_slope_;
+};
+
+/// Finds the pixels of a block of points.
+struct DirectionBlock {
+  static constexpr std::size_t kSize = 256;
+
+  PixelScale scale;
+  int azimuth_pixels, slope_pixels;
+  int first_slope, last_slope;  ///< of all blocks
+  Eigen::Vector3f sensor;
+
+  void find(const float* x, const float* y, const float* z, std::size_t size,
+            std::int32_t* azimuths, std::int32_t* slopes, std::int32_t* ends);
+};
+
+BEAUTYMAP_VECTOR_CLONES
+void DirectionBlock::find(const float* x, const float* y, const float* z, std::size_t size,
+                          std::int32_t* azimuths, std::int32_t* slopes, std::int32_t* ends) {
+  const PixelScale to_pixels = scale;
+  const float sx = sensor.x(), sy = sensor.y(), sz = sensor.z();
+  // Rounding may end at the whole circle.
+  const auto last_azimuth = static_cast<float>(azimuth_pixels - 1);
+  const int slope_end = slope_pixels;
+  int first = first_slope, last = last_slope;
+  // Short loops without branches: the compiler takes several points at a time.
+  std::array<float, kSize> distance, azimuth, slope;
+  for (std::size_t i = 0; i < size; ++i) {
+    const float dx = x[i] - sx, dy = y[i] - sy;
+    distance[i] = std::sqrt(dx * dx + dy * dy);
+    azimuth[i] = to_pixels.azimuthPixel(dx, dy);
+    // NaN straight above the sensor.
+    const float pixel = to_pixels.slopePixel((z[i] - sz) / distance[i]);
+    slope[i] = distance[i] < kNearestColumn ? -1.0F : pixel;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    ends[i] = BeamImage::limitFor(distance[i]) & ~BeamImage::kMaxCount;
+    // The order of the arguments makes NaN the lower limit.
+    azimuths[i] = static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
+    const int pixel =
+        floorToInt(std::max(-1.0F, std::min(slope[i], static_cast<float>(slope_end))));
+    slopes[i] = pixel < slope_end ? pixel : BeamImage::kOutside;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    first = std::min(first, slopes[i] < 0 ? slope_end : slopes[i]);
+    last = std::max(last, slopes[i]);
+  }
+  first_slope = first;
+  last_slope = last;
+}
+
+int wrapped(int azimuth, int pixels) {
+  return azimuth < 0 ? azimuth + pixels : azimuth >= pixels ? azimuth - pixels : azimuth;
+}
+
+bool anyBeamPassed(const BeamImage& beams, const ColumnView& view) {
+  for (int u = view.first_azimuth; u <= view.last_azimuth; ++u) {
+    if (beams.farthest(wrapped(u, beams.azimuthPixels())) > view.behind) return true;
+  }
+  return false;
+}
+
+/// The candidates of a column whose slopes the image has beams of.
+Bits inImage(Bits candidates, const BeamImage& beams, const ColumnView& view) {
+  const float lowest =
+      (static_cast<float>(beams.firstSlope()) - view.bottom_slope) / view.bit_slopes;
+  const float end =
+      (static_cast<float>(beams.lastSlope() + 1) - view.bottom_slope) / view.bit_slopes;
+  constexpr auto kEnd = static_cast<float>(kMaxBits);
+  // One bit more to each side: what rounding adds has no beams and is not seen free anyway.
+  const int first = static_cast<int>(std::clamp(lowest - 1.0F, 0.0F, kEnd));
+  const int last = static_cast<int>(std::clamp(end + 1.0F, 0.0F, kEnd));
+  return candidates & lowBits(last) & ~lowBits(first);
+}
+
+/// So many pixels are summed at once.
+constexpr std::size_t kLanes = 8;
+using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
+static_assert(kLanes <= BeamImage::kPadding, "reads that far beyond a row");
+
+/// The sums over rows of pixels: of all beams, and of those that passed.
+/// @param all, passed  have room for kLanes more
+BEAUTYMAP_VECTOR_CLONES
+void sumRows(const std::vector<const BeamImage::Pixel*>& rows, std::size_t size,
+             BeamImage::Pixel behind, BeamImage::Pixel* all, BeamImage::Pixel* passed) {
+  for (std::size_t v = 0; v < size; v += kLanes) {
+    Lanes all_lanes{}, passed_lanes{};
+    for (const BeamImage::Pixel* row : rows) {
+      Lanes lanes;
+      std::memcpy(&lanes, row + v, sizeof(lanes));
+      const Lanes counts = lanes & BeamImage::kMaxCount;
+      all_lanes += counts;
+      passed_lanes += counts & (lanes > behind);  // a true lane has all bits set
+    }
+    std::memcpy(all + v, &all_lanes, sizeof(all_lanes));
+    std::memcpy(passed + v, &passed_lanes, sizeof(passed_lanes));
+  }
+}
+
+/// The beams in the azimuths of a column, summed by slope: those that passed it, and all of them.
+class BeamSums {
+ public:
+  /// From one slope of the image to another.
+  void sum(const BeamImage& beams, const ColumnView& view, int first_slope, int last_slope) {
+    first_slope_ = first_slope;
+    last_slope_ = last_slope;
+    rows_.resize(static_cast<std::size_t>(view.last_azimuth - view.first_azimuth) + 1);
+    int azimuth = wrapped(view.first_azimuth, beams.azimuthPixels());
+    for (const BeamImage::Pixel*& row : rows_) {
+      row = beams.row(azimuth) + first_slope - beams.firstSlope();
+      if (++azimuth == beams.azimuthPixels()) azimuth = 0;
+    }
+    const auto size = static_cast<std::size_t>(last_slope - first_slope) + 1;
+    // up_to[v] counts the slopes below v.
+    all_up_to_.resize(size + kLanes + 1);
+    passed_up_to_.resize(size + kLanes + 1);
+    sumRows(rows_, size, view.behind, &all_up_to_[1], &passed_up_to_[1]);
+    std::int32_t all = 0, passed = 0;
+    all_up_to_[0] = passed_up_to_[0] = 0;
+    for (std::size_t v = 1; v <= size; ++v) {
+      all_up_to_[v] = all += all_up_to_[v];
+      passed_up_to_[v] = passed += passed_up_to_[v];
+    }
+  }
+
+  enum class Seen { kNot, kByFewBeams, kFree };
+
+  Seen see(int first_slope, int last_slope, const VisibilityConfig& config) const {
+    const int begin = std::max(first_slope, first_slope_) - first_slope_;
+    const int end = std::min(last_slope, last_slope_) - first_slope_ + 1;
+    if (begin >= end) return Seen::kNot;
+    const auto from = static_cast<std::size_t>(begin), to = static_cast<std::size_t>(end);
+    const int all = all_up_to_[to] - all_up_to_[from];
+    const int passed = passed_up_to_[to] - passed_up_to_[from];
+    if (passed == 0 || passed < config.min_share * all) return Seen::kNot;
+    return passed < config.min_beams ? Seen::kByFewBeams : Seen::kFree;
+  }
+
+ private:
+  int first_slope_ = 0;
+  int last_slope_ = -1;
+  std::vector<const BeamImage::Pixel*> rows_;
+  std::vector<BeamImage::Pixel> all_up_to_, passed_up_to_;
+};
+
+/// @param few  becomes the candidates that would be free if fewer beams were enough
+Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
+              const VisibilityConfig& config, BeamSums& sums, Bits& few) {
+  few = 0;
+  // Cells that reach out of the image's slopes are not judged.
+  while (candidates != 0 && view.firstSlope(lowestBitIndex(candidates)) < 0) {
+    candidates &= candidates - 1;
+  }
+  while (candidates != 0 && view.lastSlope(highestBitIndex(candidates)) >= beams.slopePixels()) {
+    candidates &= ~(Bits{1} << highestBitIndex(candidates));
+  }
+  if (candidates == 0) return 0;
+  const int first_slope = std::max(view.firstSlope(lowestBitIndex(candidates)), beams.firstSlope());
+  const int last_slope = std::min(view.lastSlope(highestBitIndex(candidates)), beams.lastSlope());
+  if (first_slope > last_slope) return 0;
+  sums.sum(beams, view, first_slope, last_slope);
+  Bits free = 0;
+  for (Bits rest = candidates; rest != 0; rest &= rest - 1) {
+    const int bit = lowestBitIndex(rest);
+    const BeamSums::Seen seen = sums.see(view.firstSlope(bit), view.lastSlope(bit), config);
+    if (seen == BeamSums::Seen::kFree) free |= lowestBit(rest);
+    if (seen == BeamSums::Seen::kByFewBeams) few |= lowestBit(rest);
+  }
+  return free;
+}
+
+}  // namespace
+
+BeamImage::BeamImage(const VisibilityConfig& config)
+    : azimuth_pixels_(static_cast<int>(std::ceil(360.0 / config.pixel_deg))) {
+  // Four pixels of azimuth are as many as the diamond angle's range, so that all quadrants are
+  // alike.
+  azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
+  scale_ = {static_cast<float>(azimuth_pixels_),
+            static_cast<float>(1.0 / std::tan(config.pixel_deg * kRadPerDeg))};
+  slope_pixels_ = static_cast<int>(scale_.slopePixel(PixelScale::kMaxSlope)) + 1;
+  farthest_.assign(static_cast<std::size_t>(azimuth_pixels_), 0);
+  first_slope_ = slope_pixels_;
+  last_slope_ = -1;
+}
+
+void BeamImage::findDirections(const PlacedScan& scan) {
+  for (std::vector<std::int32_t>* values : {&azimuths_, &slopes_, &ends_}) {
+    values->resize(scan.size());
+  }
+  DirectionBlock block{scale_,        azimuth_pixels_, slope_pixels_,
+                       slope_pixels_, kOutside,        scan.sensor};
+  for (std::size_t begin = 0; begin < scan.size(); begin += DirectionBlock::kSize) {
+    const std::size_t size = std::min(DirectionBlock::kSize, scan.size() - begin);
+    block.find(&scan.x[begin], &scan.y[begin], &scan.z[begin], size, &azimuths_[begin],
+               &slopes_[begin], &ends_[begin]);
+  }
+  first_slope_ = block.first_slope;
+  last_slope_ = block.last_slope;
+}
+
+void BeamImage::fill(const PlacedScan& scan) {
+  findDirections(scan);
+  // Most sensors use a small part of the slopes: the image is then small enough for the cache.
+  const auto slopes = static_cast<std::size_t>(std::max(0, last_slope_ - first_slope_ + 1));
+  const auto azimuths = static_cast<std::size_t>(azimuth_pixels_);
+  pixels_.assign(azimuths * slopes + kPadding, kEmpty);
+  farthest_.assign(azimuths, 0);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (slopes_[i] == kOutside) continue;
+    const auto u = static_cast<std::size_t>(azimuths_[i]);
+    const auto v = static_cast<std::size_t>(slopes_[i] - first_slope_);
+    Pixel& pixel = pixels_[u * slopes + v];
+    pixel = std::min(pixel & ~kMaxCount, ends_[i]) | std::min(countOf(pixel) + 1, kMaxCount);
+    Pixel& farthest = farthest_[u];
+    farthest = std::max(farthest, ends_[i] | 1);
+  }
+}
+
+BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const HeightGrid& ground,
+                      const PlacedScan& scan, const MatrixConfig& matrix,
+                      const VisibilityConfig& config, BitGrid recycled, BitGrid* few) {
+  const ColumnWindow& window = candidates.window();
+  const float res_g = static_cast<float>(matrix.res_g);
+  const float nearest = std::max(kNearestColumn + res_g, static_cast<float>(config.blind_radius));
+  BitGrid seen_free = std::move(recycled);
+  seen_free.reset(window, 0);
+  if (few != nullptr) few->reset(window, 0);
+  const float margin = 0.5F * res_g + static_cast<float>(config.margin);
+  const bool pose_is_unsure = config.pose_position > 0.0 || config.pose_rotation > 0.0;
+  ColumnViews views;
+  BeamSums sums;
+  const auto from_sensor = [&](int column, float sensor) {
+    return (static_cast<float>(column) + 0.5F) * res_g - sensor;
+  };
+  const auto judge = [&](int x) {
+    views.view(beams.scale(), from_sensor(window.corner.x - scan.anchor.x + x, scan.sensor.x()),
+               matrix);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const float distance = views.distance(i);
+      if (distance < nearest || distance > static_cast<float>(config.max_range)) continue;
+      const float unsure = pose_is_unsure ? poseError(distance, config) : 0.0F;
+      const ColumnView view = views.at(i, beams, margin + unsure);
+      const Bits judged = inImage(candidates.at(x, views.y(i)), beams, view);
+      if (judged == 0 || !anyBeamPassed(beams, view)) continue;
+      Bits by_few = 0;
+      Bits free = seenFree(judged, beams, view, config, sums, by_few);
+      if (free != 0 && pose_is_unsure) {
+        // The cell may be anywhere around where the pose puts it: all of that must be free.
+        const ColumnView around = views.at(i, beams, margin + unsure, unsure, matrix);
+        free = seenFree(free, beams, around, config, sums, by_few);
+      }
+      seen_free.at(x, views.y(i)) = free;
+      if (few != nullptr && !pose_is_unsure) few->at(x, views.y(i)) = by_few;
+    }
+    views.clear();
+  };
+  for (int x = 0; x < window.size; ++x) {
+    for (int y = 0; y < window.size; ++y) {
+      if (candidates.at(x, y) == 0) continue;
+      views.add(y, from_sensor(window.corner.y - scan.anchor.y + y, scan.sensor.y()),
+                ground.at(x, y) - scan.sensor.z());
+      if (views.full()) judge(x);
+    }
+    judge(x);
+  }
+  return seen_free;
+}
+
+}  // namespace beautymap
