@@ -74,15 +74,9 @@ std::string interval(double low, double high, bool last) {
 
 void run(const std::vector<LabelledScan>& scans, const Config& config) {
   MapCleaner cleaner(config);
-  for (const LabelledScan& labelled : scans) cleaner.observe(labelled.scan);
-  cleaner.estimateGround();
-  for (const LabelledScan& labelled : scans) {
-    if (!config.evidence.enabled) cleaner.encode(labelled.scan);
-  }
-  for (const LabelledScan& labelled : scans) cleaner.compare(labelled.scan);
-  cleaner.segmentGround();
-  for (const LabelledScan& labelled : scans) cleaner.measureFloors(labelled.scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const LabelledScan& labelled : scans) f(labelled.scan);
+  });
 
   const MatrixConfig& matrix = config.matrix;
   Table heights(kHeights), ranges(kRanges);

@@ -39,16 +39,24 @@ inline std::vector<LabelledScan> readLabelledScans(const std::string& input) {
   return scans;
 }
 
-/// What main() of `NAME INPUT [group.parameter=value...]` returns after run(scans, config).
+/// What main() of `NAME INPUT [CONFIG.yaml] [group.parameter=value...]` returns after
+/// run(scans, config).
 template <typename F>
 int runOnLabelledScans(const char* name, int argc, char** argv, F run) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: %s INPUT [group.parameter=value...]\n", name);
+    std::fprintf(stderr, "usage: %s INPUT [CONFIG.yaml] [group.parameter=value...]\n", name);
     return 2;
   }
   try {
     Config config;
-    for (int i = 2; i < argc; ++i) setParameter(config, argv[i]);
+    for (int i = 2; i < argc; ++i) {
+      const std::string argument = argv[i];
+      if (argument.find('=') == std::string::npos) {
+        config = loadConfig(argument);
+      } else {
+        setParameter(config, argument);
+      }
+    }
     const std::vector<LabelledScan> scans = readLabelledScans(argv[1]);
     config.matrix.res_g = cellSizeFor(scans.front().scan, config).value_or(config.matrix.res_g);
     run(scans, config);

@@ -60,15 +60,10 @@ void scan_in_map(State& state) {
   const auto forEachArea = [&](auto f) {
     for (int i = 0; i < areas; ++i) f(shifted(scan, i % 10 * kDistance_m, i / 10 * kDistance_m));
   };
-  forEachArea([&](const Scan& s) { cleaner.observe(s); });
-  cleaner.estimateGround();
-  if (cleaner.needsEncoding()) forEachArea([&](const Scan& s) { cleaner.encode(s); });
-  forEachArea([&](const Scan& s) { cleaner.compare(s); });
+  cleanMap(cleaner, forEachArea);
   for (auto _ : state) {
     cleaner.observe(scan);
-    if (cleaner.needsEncoding()) cleaner.encode(scan);
-    cleaner.compare(scan);
-    if (cleaner.needsFloors()) cleaner.measureFloors(scan);
+    for (const JudgementPass& pass : cleaner.passes()) cleaner.add(pass, scan);
     benchmark::DoNotOptimize(cleaner.classify(scan));
   }
   state.counters["tiles"] = static_cast<double>(cleaner.map().tileCount());
@@ -92,15 +87,7 @@ void road(State& state) {
         f(scan);
       }
     };
-    forEachScan([&](const Scan& scan) { cleaner->observe(scan); });
-    cleaner->estimateGround();
-    if (cleaner->needsEncoding()) forEachScan([&](const Scan& scan) { cleaner->encode(scan); });
-    forEachScan([&](const Scan& scan) { cleaner->compare(scan); });
-    cleaner->segmentGround();
-    if (cleaner->needsFloors()) {
-      forEachScan([&](const Scan& scan) { cleaner->measureFloors(scan); });
-      cleaner->segmentFloors();
-    }
+    cleanMap(*cleaner, forEachScan);
     forEachScan([&](const Scan& scan) { benchmark::DoNotOptimize(cleaner->classify(scan)); });
   }
   using benchmark::Counter;

@@ -54,12 +54,9 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
     free_ms.push_back(Milliseconds(Clock::now() - published).count());
   }
   MapCleaner cleaner(config);
-  for (const LabelledScan& scan : scans) cleaner.observe(scan.scan);
-  cleaner.estimateGround();
-  for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
-  cleaner.segmentGround();
-  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const LabelledScan& scan : scans) f(scan.scan);
+  });
   std::size_t points = 0, agreeing = 0;
   for (const LabelledScan& scan : scans) {
     const Classes replayed = cleaner.classify(scan.scan);

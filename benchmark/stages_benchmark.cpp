@@ -35,15 +35,9 @@ Config configFrom(const std::string& name, const State& state) {
 struct Prepared {
   Prepared(const std::vector<Scan>& scans, const Config& c)
       : config(c), scan(scans[scans.size() / 2]), cleaner(c) {
-    for (const Scan& s : scans) cleaner.observe(s);
-    cleaner.estimateGround();
-    for (const Scan& s : scans) cleaner.encode(s);
-    for (const Scan& s : scans) cleaner.compare(s);
-    cleaner.segmentGround();
-    if (cleaner.needsFloors()) {
-      for (const Scan& s : scans) cleaner.measureFloors(s);
-      cleaner.segmentFloors();
-    }
+    cleanMap(cleaner, [&](const auto& f) {
+      for (const Scan& s : scans) f(s);
+    });
     DroppedPoints dropped;
     placed = placeScan(scan, cleaner.zOrigin(), c.matrix.res_g, c.scan, dropped);
     window = mapWindow();
@@ -161,18 +155,16 @@ void beam_visibility(State& state) {
 }
 
 // The passes, of which each places the scan. A whole scan is all of them, placed once as the replay
-// does; only the published method needs encode.
+// does.
 template <const char* kConfig>
 void observe(State& state) {
   run(state, kConfig, [](Prepared& p) { p.cleaner.observe(p.scan); });
 }
 template <const char* kConfig>
-void encode(State& state) {
-  run(state, kConfig, [](Prepared& p) { p.cleaner.encode(p.scan); });
-}
-template <const char* kConfig>
-void compare(State& state) {
-  run(state, kConfig, [](Prepared& p) { p.cleaner.compare(p.scan); });
+void judge(State& state) {
+  run(state, kConfig, [](Prepared& p) {
+    for (const JudgementPass& pass : p.cleaner.passes()) p.cleaner.add(pass, p.scan);
+  });
 }
 template <const char* kConfig>
 void extraction(State& state) {
@@ -185,10 +177,10 @@ void whole_scan(State& state) {
   run(state, kConfig, [&](Prepared& p) {
     p.cleaner.place(p.scan, view);
     p.cleaner.observe(view);
-    if (p.cleaner.needsEncoding()) p.cleaner.encode(view);
-    p.cleaner.look(view);
-    p.cleaner.add(view);
-    if (p.cleaner.needsFloors()) p.cleaner.measureFloors(view);
+    for (const JudgementPass& pass : p.cleaner.passes()) {
+      p.cleaner.look(pass, view);
+      p.cleaner.add(pass, view);
+    }
     p.cleaner.classify(view, classes);
     DoNotOptimize(classes.data());
   });
@@ -201,7 +193,9 @@ void coarse_ground_of_map(State& state) {
 }
 template <const char* kConfig>
 void judgement_of_map(State& state) {
-  run(state, kConfig, [](Prepared& p) { p.cleaner.segmentGround(); });
+  run(state, kConfig, [](Prepared& p) {
+    for (const JudgementPass& pass : p.cleaner.passes()) p.cleaner.conclude(pass);
+  });
 }
 
 constexpr char kPaper[] = "paper_kitti";
@@ -225,14 +219,13 @@ BENCHMARK(reverse_ray_casting)->Apply(beamsAndCells);
 BENCHMARK(beam_image)->Apply(beamsAndCells);
 BENCHMARK(beam_visibility)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(observe, kPaper)->Apply(beamsAndCells);
-BENCHMARK_TEMPLATE(encode, kPaper)->Apply(beamsAndCells);
-BENCHMARK_TEMPLATE(compare, kPaper)->Apply(beamsAndCells);
+BENCHMARK_TEMPLATE(judge, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(extraction, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(whole_scan, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(coarse_ground_of_map, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(judgement_of_map, kPaper)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(observe, kDefault)->Apply(beamsAndCells);
-BENCHMARK_TEMPLATE(compare, kDefault)->Apply(beamsAndCells);
+BENCHMARK_TEMPLATE(judge, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(extraction, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(whole_scan, kDefault)->Apply(beamsAndCells);
 BENCHMARK_TEMPLATE(coarse_ground_of_map, kDefault)->Apply(beamsAndCells);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iomanip>
 #include <iterator>
 #include <set>
@@ -54,6 +55,19 @@ void assign(const std::string& name, const YAML::Node& node, T& value, T min, T 
   value = parsed;
 }
 
+using Choices = std::initializer_list<const char*>;
+
+std::string text(Choices choices) {
+  std::string all;
+  for (const char* choice : choices) all.append(all.empty() ? "" : " or ").append(choice);
+  return all;
+}
+
+void checkChoice(const std::string& name, const std::string& value, Choices choices) {
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  throw ConfigError("parameter " + name + " = '" + value + "': must be " + text(choices));
+}
+
 /// Sets the parameters that a YAML map names, and remembers which names exist.
 class Reader {
  public:
@@ -78,6 +92,14 @@ class Reader {
     names_.push_back(name);
     if (!node_.IsDefined() || !node_.IsMap() || !node_[name]) return;
     assign(group_ + "." + name, node_[name], value, min, max, unit);
+  }
+  void operator()(const char* name, std::string& value, Choices choices, const char*) {
+    names_.push_back(name);
+    if (!node_.IsDefined() || !node_.IsMap() || !node_[name]) return;
+    const std::string written =
+        node_[name].IsScalar() ? node_[name].Scalar() : "not a single value";
+    checkChoice(group_ + "." + name, written, choices);
+    value = written;
   }
 
   void refuseUnknownGroups() const {
@@ -130,6 +152,9 @@ class RangeChecker {
     // Written so that NaN is refused.
     if (!(value >= min && value <= max)) refuse(group_ + "." + name, text(value), min, max, unit);
   }
+  void operator()(const char* name, const std::string& value, Choices choices, const char*) {
+    checkChoice(group_ + "." + name, value, choices);
+  }
 
  private:
   std::string group_;
@@ -144,7 +169,12 @@ class Lister {
   }
   template <typename T>
   void operator()(const char* name, T& value, T min, T max, const char* unit, const char* meaning) {
-    list.push_back({group_ + "." + name, text(value), unit, text(min), text(max), meaning});
+    list.push_back({group_ + "." + name, text(value), unit, text(min), text(max), meaning, ""});
+  }
+  void operator()(const char* name, const std::string& value, Choices choices,
+                  const char* meaning) {
+    list.push_back({group_ + "." + name, value, "", *choices.begin(), *(choices.end() - 1), meaning,
+                    text(choices)});
   }
 
   std::vector<ParameterInfo> list;

@@ -8,14 +8,31 @@
 
 namespace beautymap {
 
-int fineBinCount(const MatrixConfig& matrix, const FineGroundConfig& config) {
-  // The small amount keeps 0.2 / 0.1 from becoming 3.
-  return static_cast<int>(std::ceil(matrix.res_h / config.bin_height - 1e-6));
+FineGround::FineGround(const MatrixConfig& matrix, const FineGroundConfig& config)
+    : encoding_(matrix),
+      res_h_(matrix.res_h),
+      bin_height_(static_cast<float>(config.bin_height)),
+      // The small amount keeps 0.2 / 0.1 from becoming 3.
+      bins_(static_cast<int>(std::ceil(matrix.res_h / config.bin_height - 1e-6))) {}
+
+int FineGround::binInCell(float height_in_cell) const {
+  return static_cast<int>(
+      std::clamp(height_in_cell / bin_height_, 0.0F, static_cast<float>(bins_ - 1)));
 }
 
-int fineBinOf(float height_in_cell, int bins, const FineGroundConfig& config) {
-  const float bin = height_in_cell / static_cast<float>(config.bin_height);
-  return static_cast<int>(std::clamp(bin, 0.0F, static_cast<float>(bins - 1)));
+int FineGround::binOf(float z, float bottom, int ground_bit) const {
+  const int bit = encoding_.bitIndex(z, bottom);
+  if (bit < 0 || bit < ground_bit) return -1;
+  if (bit > ground_bit) return bins_;
+  return binInCell(z - (bottom + static_cast<float>(bit * res_h_)));
+}
+
+bool FineGround::isDynamic(float z, float bottom, Bits dynamic, int static_bins,
+                           int ground_bit) const {
+  const int bit = dynamic == 0 ? -1 : encoding_.bitIndex(z, bottom);
+  if (bit < 0) return false;
+  if ((dynamic >> bit & 1) != 0) return true;
+  return bit == ground_bit && static_bins > 0 && binOf(z, bottom, ground_bit) >= static_bins;
 }
 
 int groundBins(const std::uint32_t* counts, int bins, double ground_ratio) {
@@ -36,7 +53,7 @@ void segmentFineGround(Tile& tile, const FineGroundConfig& config, int ground_bi
     const Bits above_ground_cell = ground_cell << 1;
     tile.static_bins[i] = 0;
     if ((tile.dynamic[i] & above_ground_cell) == 0) continue;
-    const std::uint32_t* counts = tile.fine_counts.data() + i * static_cast<std::size_t>(bins);
+    const std::uint32_t* counts = tile.fineCounts(i);
     tile.static_bins[i] = static_cast<std::uint16_t>(groundBins(counts, bins, config.ground_ratio));
   }
 }

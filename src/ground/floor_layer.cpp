@@ -37,13 +37,13 @@ int floorBit(Bits occupied, Bits dynamic, int ground_bit) {
   return floors == 0 ? -1 : lowestBitIndex(floors);
 }
 
-bool findFloors(Tile& tile, const FloorLayer& layer, int ground_bit) {
+bool findFloors(const Tile& tile, FloorCells& floors, const FloorLayer& layer, int ground_bit) {
   bool changed = false;
   for (std::size_t column = 0; column < Tile::kColumns; ++column) {
     if (tile.dynamic[column] == 0) continue;  // nothing depends on its floor
     const int bit = floorBit(tile.occupied[column], tile.dynamic[column], ground_bit);
     if (bit < 0) continue;
-    FloorCell& floor = tile.floors.touch(column);
+    FloorCell& floor = floors.touch(column);
     const FloorCell before = floor;
     if (floor.bit != bit) floor = {bit};
     floor.static_bins = layer.staticBins(floor.counts);

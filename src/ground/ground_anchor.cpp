@@ -6,9 +6,36 @@
 #include <cmath>
 
 namespace beautymap {
-namespace {
 
-void shiftCounts(std::uint32_t* counts, int bins, long shift) {
+Bits shiftedUpToTop(Bits cells, int bits, int n_bit) {
+  const Bits above = bits > 0 ? cells & ~lowBits(n_bit - bits) : 0;
+  return (shifted(cells, bits) & lowBits(n_bit)) | (above != 0 ? Bits{1} << (n_bit - 1) : 0);
+}
+
+int moveBottom(Tile& tile, std::size_t column, float bottom, const MatrixConfig& config) {
+  const double wanted = static_cast<double>(tile.ground[column]) - bottom;
+  const int bits = static_cast<int>(std::lround(wanted / config.res_h));
+  // By whole bits, so that no cell ever comes to lie beside its points.
+  tile.ground[column] -= static_cast<float>(bits * config.res_h);
+  tile.occupied[column] = shiftedUpToTop(tile.occupied[column], bits, config.n_bit);
+  tile.dynamic[column] = shifted(tile.dynamic[column], bits) & lowBits(config.n_bit);
+  return bits;
+}
+
+int anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift, bool cells_known,
+                 const MatrixConfig& config) {
+  const float old = tile.ground[column];
+  if (old == bottom) return 0;
+  if (old == Tile::kNoHeight || !cells_known) {
+    tile.ground[column] = bottom;
+    return 0;
+  }
+  return std::abs(old - bottom) > max_drift ? moveBottom(tile, column, bottom, config) : 0;
+}
+
+void shiftCounts(Tile& tile, std::size_t column, long shift) {
+  const int bins = tile.fineBins();
+  std::uint32_t* counts = tile.fineCounts(column);
   if (std::abs(shift) >= bins) {
     std::fill(counts, counts + bins, 0U);
   } else if (shift > 0) {
@@ -18,61 +45,6 @@ void shiftCounts(std::uint32_t* counts, int bins, long shift) {
     std::move(counts - shift, counts + bins, counts);
     std::fill(counts + bins + shift, counts + bins, 0U);
   }
-}
-
-}  // namespace
-
-void moveBottom(Tile& tile, std::size_t column, float bottom, const Config& config) {
-  const double wanted = static_cast<double>(tile.ground[column]) - bottom;
-  const int bits = static_cast<int>(std::lround(wanted / config.matrix.res_h));
-  // By whole bits, so that no cell ever comes to lie beside its points.
-  const double up = bits * config.matrix.res_h;
-  tile.ground[column] -= static_cast<float>(up);
-  const Bits mask = lowBits(config.matrix.n_bit);
-  const auto move = [&](Bits& cells) { cells = shifted(cells, bits) & mask; };
-  const Bits above = bits > 0 ? tile.occupied[column] & ~lowBits(config.matrix.n_bit - bits) : 0;
-  move(tile.occupied[column]);
-  if (above != 0) tile.occupied[column] |= Bits{1} << (config.matrix.n_bit - 1);
-  move(tile.suspected[column]);
-  move(tile.strong[column]);
-  move(tile.leaning[column]);
-  move(tile.unknown[column]);
-  move(tile.flickering[column]);
-  move(tile.dynamic[column]);
-  if (tile.evidence.has(column)) tile.evidence.touch(column).shift(bits, mask);
-  if (tile.floors.has(column)) tile.floors.touch(column).bit += bits;
-  const bool layer = config.ground_layer.enabled;
-  // Without a ground layer the bins divide one cell: they belong to another one now.
-  const long bins = layer       ? std::lround(up / config.ground_layer.bin_height)
-                    : bits == 0 ? 0
-                                : tile.fineBins();
-  shiftCounts(tile.fine_counts.data() + column * static_cast<std::size_t>(tile.fineBins()),
-              tile.fineBins(), bins);
-}
-
-bool anchorColumn(Tile& tile, std::size_t column, float bottom, double max_drift,
-                  const Config& config) {
-  const float old = tile.ground[column];
-  if (old == bottom) return false;
-  const bool holds_nothing =
-      old == Tile::kNoHeight || (tile.occupied[column] == 0 && !tile.evidence.has(column));
-  if (holds_nothing) tile.ground[column] = bottom;
-  if (holds_nothing || std::abs(old - bottom) <= max_drift) return false;
-  moveBottom(tile, column, bottom, config);
-  return tile.ground[column] != old;
-}
-
-bool hangsOverFreeSpace(const Tile& tile, std::size_t column, float height, const Config& config) {
-  if (tile.evidence.empty() || tile.ground[column] == Tile::kNoHeight) return false;
-  // One cell below a surface is still in the footprint of beams that graze it.
-  const int below = BinaryEncoding(config.matrix).bitIndex(height, tile.ground[column]) - 1;
-  if (below <= 0) return false;
-  const ColumnEvidence& evidence = tile.evidence[column];
-  Bits rest = evidence.everFree() & ~tile.occupied[column] & lowBits(below);
-  for (; rest != 0; rest &= rest - 1) {
-    if (evidence.freeBefore(lowestBitIndex(rest)) >= config.evidence.min_free_in_order) return true;
-  }
-  return false;
 }
 
 std::array<float, Tile::kColumns> groundOfOtherColumns(

@@ -20,6 +20,14 @@ int regionReach(const MatrixConfig& config) {
 
 }  // namespace
 
+float depthBelowGround(const MatrixConfig& config) {
+  // The lowest points are what the ground's height comes from: not even rounding may move them to
+  // the cell below.
+  constexpr double kRounding = 1e-3;  // [m]
+  const double depth = config.bits_below * config.res_h;
+  return static_cast<float>(config.bits_below == 0 ? depth : depth + kRounding);
+}
+
 ColumnWindow regionOfInterest(const PlacedScan& scan, const MatrixConfig& config) {
   return windowAround(scan.anchor, regionReach(config));
 }

@@ -4,6 +4,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <filesystem>
@@ -51,6 +52,13 @@ std::deque<SourceScan> readAhead(ScanSource& source, Config& config) {
   return scans;
 }
 
+/// What of the placed scans any pass needs.
+PlacedSpool::Part partOf(const std::vector<JudgementPass>& passes) {
+  const bool all = std::any_of(passes.begin(), passes.end(),
+                               [](const JudgementPass& pass) { return pass.needs_xy; });
+  return all ? PlacedSpool::Part::kAll : PlacedSpool::Part::kHeights;
+}
+
 /// The passes over the scans, in their order.
 class OfflineRun {
  public:
@@ -62,30 +70,23 @@ class OfflineRun {
         read_ahead_(readAhead(source, config)),
         cleaner_(config),
         spool_(options.output),
-        placed_(options.output, cleaner_.needsEncoding() ? Part::kHeights : Part::kAll) {}
+        placed_(options.output, partOf(cleaner_.passes())) {}
 
   OfflineReport run() {
     const auto start = std::chrono::steady_clock::now();
     observe();
     cleaner_.estimateGround();
-    if (cleaner_.needsEncoding()) {
+    for (const JudgementPass& p : cleaner_.passes()) {
       pass(
-          "encoding", [&](ReadScan& s) { return placed_.next(s.view.placed, Part::kHeights); },
-          [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.encode(s.view); });
-    }
-    pass(
-        "comparing", [&](ReadScan& s) { return placed_.next(s.view.placed); },
-        [&](ReadScan& s) { cleaner_.look(s.view); },
-        [&](const ReadScan& s) {
-          levellings_.push_back(s.view.levelling);
-          cleaner_.add(s.view);
-        });
-    cleaner_.segmentGround();
-    if (cleaner_.needsFloors()) {
-      pass(
-          "measuring floors", [&](ReadScan& s) { return nextLevelled(s.view.placed); },
-          [](ReadScan&) {}, [&](const ReadScan& s) { cleaner_.measureFloors(s.view); });
-      cleaner_.segmentFloors();
+          p.name,
+          [&](ReadScan& s) { return nextPlaced(s.view, p.needs_xy ? Part::kAll : Part::kHeights); },
+          [&](ReadScan& s) { cleaner_.look(p, s.view); },
+          [&](const ReadScan& s) {
+            if (!levelled_) levellings_.push_back(*s.view.levelling);
+            cleaner_.add(p, s.view);
+          });
+      cleaner_.conclude(p);
+      levelled_ = true;
     }
     write();
     for (const auto& stage : cleaner_.times().stages())
@@ -102,8 +103,8 @@ class OfflineRun {
   using Part = PlacedSpool::Part;
 
   bool nextScan(SourceScan& scan);
-  /// The heights of the next scan of a pass after "comparing".
-  bool nextLevelled(PlacedScan& scan);
+  /// The next scan of a pass as it was placed, and levelled as in the first pass.
+  bool nextPlaced(ScanView& view, Part part);
   void observe();
   template <typename Read, typename Work, typename Use>
   void pass(const std::string& name, Read read, Work work, Use use);
@@ -116,7 +117,8 @@ class OfflineRun {
   MapCleaner cleaner_;
   ScanSpool spool_;                    ///< the scans as they came, for writing
   PlacedSpool placed_;                 ///< the same scans in the map, for the passes between
-  std::vector<Levelling> levellings_;  ///< of the scans, once they are compared
+  std::vector<Levelling> levellings_;  ///< of the scans, from the first pass
+  bool levelled_ = false;              ///< it is over
   std::size_t next_levelling_ = 0;     ///< of the pass at hand
   OfflineReport report_;
   bool labelled_ = true;  ///< until a scan without labels comes
@@ -129,9 +131,12 @@ bool OfflineRun::nextScan(SourceScan& scan) {
   return true;
 }
 
-bool OfflineRun::nextLevelled(PlacedScan& scan) {
-  if (!placed_.next(scan, Part::kHeights)) return false;
-  applyLevelling(levellings_[next_levelling_++], scan);
+bool OfflineRun::nextPlaced(ScanView& view, Part part) {
+  if (!placed_.next(view.placed, part)) return false;
+  view.levelling.reset();
+  if (!levelled_) return true;
+  view.levelling = levellings_[next_levelling_++];
+  applyLevelling(*view.levelling, view.placed);
   return true;
 }
 
@@ -208,7 +213,9 @@ void OfflineRun::write() {
   spool_.rewind();
   pass(
       "writing",
-      [&](ReadScan& read) { return nextLevelled(read.view.placed) && spool_.next(read.source); },
+      [&](ReadScan& read) {
+        return nextPlaced(read.view, Part::kHeights) && spool_.next(read.source);
+      },
       [&](ReadScan& read) { writer.prepare(read.view, read.source, read.output); },
       [&](ReadScan& read) {
         cleaner_.addTimes(read.view);

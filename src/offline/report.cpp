@@ -54,7 +54,8 @@ std::string toJson(const OfflineReport& report, const Config& config) {
   }
   for (const ParameterInfo& p : listParameters(config)) {
     const auto dot = p.name.find('.');
-    json["config"][p.name.substr(0, dot)][p.name.substr(dot + 1)] = Json::parse(p.value);
+    json["config"][p.name.substr(0, dot)][p.name.substr(dot + 1)] =
+        p.choices.empty() ? Json::parse(p.value) : Json(p.value);
   }
   return json.dump(2) + "\n";
 }

@@ -141,7 +141,7 @@ void OnlineCleaner::fetchNear(const Eigen::Vector3d& sensor) {
       continue;
     }
     TilePoints points;
-    Tile tile(map_.map().fineBins());
+    Tile tile = map_.map().newTile();
     fetch(index, tile, points);
     map_.map().tileAt(index) = std::move(tile);
     points_.countAdded(points.size());
@@ -198,7 +198,7 @@ bool OnlineCleaner::look(ColumnIndex index, TileView& view) const {
     lock.settle(*this);
     on_disk = on_disk_.count({index.x, index.y}) != 0;
     if (on_disk) {
-      judged = Tile(map_.map().fineBins());
+      judged = map_.map().newTile();
       fetch(index, judged, portion);
     }
     const Tile* tile = on_disk ? &judged : std::as_const(map_).map().findTile(index);
@@ -285,7 +285,7 @@ void OnlineCleaner::saveSession(const std::string& path, const std::string& map_
   for (const ColumnIndex index : all) {
     const ReaderLock lock(*this);
     if (on_disk_.count({index.x, index.y}) != 0) {
-      Tile tile(map_.map().fineBins());
+      Tile tile = map_.map().newTile();
       TilePoints points;
       fetch(index, tile, points);
       writer.append(index, tile, points);
@@ -309,7 +309,7 @@ std::string OnlineCleaner::loadSession(const std::string& path) {
   }
   started_ = true;
   while (true) {
-    Tile tile(map_.map().fineBins());
+    Tile tile = map_.map().newTile();
     TilePoints points;
     ColumnIndex index;
     if (!reader.next(index, tile, points)) break;

@@ -6,16 +6,15 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <type_traits>
 #include <utility>
 
-#include "beautymap/evidence/map_judgement.h"
+#include "beautymap/cleaner/make_judgement.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 6\n";
+constexpr char kMagic[] = "beautymap tiles 7\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -32,13 +31,9 @@ Meaning meaningOf(const Config& config) {
           config.fine_ground.bin_height,
           config.matrix.n_bit,
           config.matrix.bits_below,
-          MapJudgement(config).fineBins(),
+          makeJudgement(config)->newMap().fineBins(),
           config.ground_layer.enabled ? 1 : 0};
 }
-
-static_assert(std::is_trivially_copyable<ColumnEvidence>::value &&
-                  std::is_trivially_copyable<FloorCell>::value,
-              "they are stored as they are");
 
 /// Calls f(data, bytes) for each array of a tile.
 template <typename TileType, typename F>
@@ -49,11 +44,6 @@ void forEachArray(TileType& tile, F f) {
   f(tile.level_scans.data(), sizeof(tile.level_scans));
   f(tile.below_ground.data(), sizeof(tile.below_ground));
   f(tile.occupied.data(), sizeof(tile.occupied));
-  f(tile.suspected.data(), sizeof(tile.suspected));
-  f(tile.strong.data(), sizeof(tile.strong));
-  f(tile.leaning.data(), sizeof(tile.leaning));
-  f(tile.unknown.data(), sizeof(tile.unknown));
-  f(tile.flickering.data(), sizeof(tile.flickering));
   f(tile.dynamic.data(), sizeof(tile.dynamic));
   f(tile.static_bins.data(), sizeof(tile.static_bins));
   f(tile.fine_counts.data(), tile.fine_counts.size() * sizeof(tile.fine_counts[0]));
@@ -73,6 +63,7 @@ TileFileWriter::TileFileWriter(std::string path, const Header& header, const Con
     write(value.data(), value.size());
   };
   write(kMagic, sizeof(kMagic) - 1);
+  text(config.judgement.method);
   const Meaning meaning = meaningOf(config);
   write(&meaning, sizeof(meaning));
   write(&header.z_origin, sizeof(header.z_origin));
@@ -99,18 +90,10 @@ void TileFileWriter::write(const void* data, std::size_t size) {
 }
 
 void TileFileWriter::append(ColumnIndex index, const Tile& tile, const TilePoints& points) {
-  const auto writeVector = [&](const auto& values) {
-    const std::uint64_t bytes = values.size() * sizeof(values[0]);
-    write(&bytes, sizeof(bytes));
-    write(values.data(), bytes);
-  };
   write(&kTile, sizeof(kTile));
   write(&index, sizeof(index));
   forEachArray(tile, [&](const void* data, std::size_t size) { write(data, size); });
-  writeVector(tile.evidence.places());
-  writeVector(tile.evidence.values());
-  writeVector(tile.floors.places());
-  writeVector(tile.floors.values());
+  (*tile.state).write(*this);
   writeVector(points.records);
   writeVector(points.column);
   writeVector(points.z);
@@ -141,6 +124,21 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
   if (!std::equal(magic, magic + sizeof(magic), kMagic)) {
     throw InputError("'" + path + "' holds no session of this version");
   }
+  const auto number = [&] {
+    std::uint64_t value = 0;
+    read(&value, sizeof(value));
+    return value;
+  };
+  const auto text = [&] {
+    std::vector<char> value;
+    readVector(value);
+    return std::string(value.begin(), value.end());
+  };
+  const std::string method = text();
+  if (method != config.judgement.method) {
+    throw InputError("'" + path + "' was made with judgement.method = " + method + ", not with " +
+                     config.judgement.method + ": go on with that, or begin a new map");
+  }
   Meaning written;
   read(&written, sizeof(written));
   cell_size_ = written.res_g;
@@ -152,16 +150,6 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
                      "' was written with other matrix, ground_layer or fine_ground parameters: go "
                      "on with those, or begin a new map");
   }
-  const auto number = [&] {
-    std::uint64_t value = 0;
-    read(&value, sizeof(value));
-    return value;
-  };
-  const auto text = [&] {
-    std::vector<char> value;
-    readVector(value);
-    return std::string(value.begin(), value.end());
-  };
   read(&header_.z_origin, sizeof(header_.z_origin));
   header_.map_frame = text();
   header_.layout.height = 1;
@@ -181,15 +169,11 @@ void TileFileReader::read(void* data, std::size_t size) {
   throw InputError("'" + path_ + "' is truncated or damaged");
 }
 
-template <typename T>
-void TileFileReader::readVector(std::vector<T>& values) {
-  std::uint64_t bytes = 0;
-  read(&bytes, sizeof(bytes));
-  if (bytes > size_ || bytes % sizeof(T) != 0) {
+std::size_t TileFileReader::checkedCount(std::uint64_t bytes, std::size_t value_size) const {
+  if (bytes > size_ || bytes % value_size != 0) {
     throw InputError("'" + path_ + "' is truncated or damaged");
   }
-  values.resize(bytes / sizeof(T));
-  read(values.data(), bytes);
+  return bytes / value_size;
 }
 
 bool TileFileReader::next(ColumnIndex& index, Tile& tile, TilePoints& points) {
@@ -199,21 +183,14 @@ bool TileFileReader::next(ColumnIndex& index, Tile& tile, TilePoints& points) {
   if (kind != kTile) throw InputError("'" + path_ + "' is damaged");
   read(&index, sizeof(index));
   forEachArray(tile, [&](void* data, std::size_t size) { read(data, size); });
-  const auto readSparse = [&](auto& columns, auto values) {
-    std::vector<std::uint16_t> places;
-    readVector(places);
-    readVector(values);
-    return columns.assign(std::move(places), std::move(values));
-  };
-  const bool has_evidence = readSparse(tile.evidence, std::vector<ColumnEvidence>());
-  const bool has_floors = readSparse(tile.floors, std::vector<FloorCell>());
+  const bool has_state = (*tile.state).read(*this);
   readVector(points.records);
   readVector(points.column);
   readVector(points.z);
   std::vector<std::uint64_t> keys;
   readVector(keys);
   for (const std::uint64_t key : keys) points.voxels.insert(key);
-  const bool consistent = has_evidence && has_floors && points.z.size() == points.size() &&
+  const bool consistent = has_state && points.z.size() == points.size() &&
                           points.records.size() == points.size() * header_.layout.point_step &&
                           std::all_of(points.column.begin(), points.column.end(),
                                       [](std::uint16_t column) { return column < Tile::kColumns; });

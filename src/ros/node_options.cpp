@@ -126,11 +126,11 @@ class Lister {
  public:
   template <typename T>
   void operator()(const char* name, T& value, const char* meaning) {
-    list.push_back({name, text(value), "", "", "", meaning});
+    list.push_back({name, text(value), "", "", "", meaning, ""});
   }
   template <typename T>
   void operator()(const char* name, T& value, T min, T max, const char* unit, const char* meaning) {
-    list.push_back({name, text(value), unit, text(min), text(max), meaning});
+    list.push_back({name, text(value), unit, text(min), text(max), meaning, ""});
   }
   std::vector<ParameterInfo> list;
 };
@@ -150,7 +150,9 @@ std::string groupsAsYaml(const XmlRpcValue& parameters, const std::set<std::stri
       std::string value;
       bool flag = false;
       double number = 0.0;
-      if (convert(entry.second, flag)) {
+      if (convert(entry.second, value)) {
+        value = "'" + value + "'";
+      } else if (convert(entry.second, flag)) {
         value = text(flag);
       } else if (convert(entry.second, number)) {
         std::ostringstream exact;

@@ -69,8 +69,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 100.0));
   std::string footer = "Parameters for --set and YAML files (default, range):\n";
   for (const ParameterInfo& p : listParameters(Config())) {
-    footer += "  " + p.name + " = " + p.value + " (" + p.min + " to " + p.max +
-              (p.unit.empty() ? "" : " " + p.unit) + "): " + p.meaning + "\n";
+    footer += "  " + p.name + " = " + p.value + " (" + p.range() + "): " + p.meaning + "\n";
   }
   app.footer(footer);
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "beautymap/evidence/evidence_tile.h"
 #include "cleaner/reference_cleaner.h"
 #include "test_scenes.h"
 
@@ -25,13 +26,9 @@ using Classes = std::vector<std::vector<PointClass>>;
 /// The phases over all scans.
 MapCleaner clean(const std::vector<Scan>& scans, const Config& config) {
   MapCleaner cleaner(config);
-  for (const Scan& scan : scans) cleaner.observe(scan);
-  cleaner.estimateGround();
-  for (const Scan& scan : scans) cleaner.encode(scan);
-  for (const Scan& scan : scans) cleaner.compare(scan);
-  cleaner.segmentGround();
-  for (const Scan& scan : scans) cleaner.measureFloors(scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const Scan& scan : scans) f(scan);
+  });
   return cleaner;
 }
 
@@ -57,7 +54,8 @@ int countOf(const Classes& classes, PointClass wanted) {
 /// The published settings for 64 beams, in a region that covers the small worlds of the tests.
 Config paperConfig() {
   Config config;
-  config.evidence.enabled = false;
+  config.judgement.method = "published";
+  config.levelling.enabled = false;
   config.matrix.bits_below = 0;
   config.matrix.res_g = 1.0;
   config.matrix.res_h = 0.5;
@@ -73,7 +71,8 @@ Config paperConfig() {
 Config randomConfig(std::uint32_t seed) {
   Random random(seed + 77777);
   Config config;
-  config.evidence.enabled = false;
+  config.judgement.method = "published";
+  config.levelling.enabled = false;
   config.matrix.bits_below = 0;
   config.scan.min_range = random.pick<double>({0.0, 1.0});
   config.matrix.res_g = random.pick<double>({0.5, 1.0, 2.0});
@@ -185,11 +184,13 @@ TEST_P(MapCleanerProperties, TheOrderOfTheScansMayDifferBetweenPhases) {
   MapCleaner cleaner(config_);
   for (const Scan& scan : scans_) cleaner.observe(scan);
   cleaner.estimateGround();
-  for (auto scan = scans_.rbegin(); scan != scans_.rend(); ++scan) cleaner.encode(*scan);
-  for (std::size_t i = 0; i < scans_.size(); ++i) cleaner.compare(scans_[(i + 2) % scans_.size()]);
-  cleaner.segmentGround();
-  for (const Scan& scan : scans_) cleaner.measureFloors(scan);
-  cleaner.segmentFloors();
+  for (std::size_t p = 0; p < cleaner.passes().size(); ++p) {
+    const JudgementPass& pass = cleaner.passes()[p];
+    for (std::size_t i = 0; i < scans_.size(); ++i) {
+      cleaner.add(pass, scans_[(i + 2 * (p + 1)) % scans_.size()]);
+    }
+    cleaner.conclude(pass);
+  }
   EXPECT_EQ(classify(cleaner, scans_), cleanedClasses(scans_, config_));
 }
 
@@ -395,8 +396,9 @@ TEST(MapCleanerInput, APoseThatIsNotFiniteIsRefusedAndTheMapUnchanged) {
   bad[2].T_map_cloud.linear()(0, 1) = test::kInfinity;
   for (const Scan& scan : bad) {
     EXPECT_THROW(cleaner.observe(scan), std::invalid_argument);
-    EXPECT_THROW(cleaner.encode(scan), std::invalid_argument);
-    EXPECT_THROW(cleaner.compare(scan), std::invalid_argument);
+    for (const JudgementPass& pass : cleaner.passes()) {
+      EXPECT_THROW(cleaner.add(pass, scan), std::invalid_argument);
+    }
     EXPECT_THROW(cleaner.classify(scan), std::invalid_argument);
   }
   EXPECT_TRUE(stateOf(cleaner, scans) == before);
@@ -502,7 +504,7 @@ TEST(MapCleaner, OnlyCellsThatCanBeJudgedAreLookedAt) {
   MapCleaner cleaner(config);
   cleaner.observe(scan);
   cleaner.estimateGround();
-  cleaner.compare(scan);
+  cleaner.add(cleaner.passes().front(), scan);
   const int ground = config.matrix.bits_below;
   const auto at = [&](double x, double y) {
     const ColumnIndex column = columnOf({x, y, 0.0}, config.matrix.res_g);
@@ -510,18 +512,19 @@ TEST(MapCleaner, OnlyCellsThatCanBeJudgedAreLookedAt) {
                           static_cast<std::size_t>(TileMap::indexInTile(column)));
   };
   const auto [flat, floor] = at(10.25, 0.25);
-  EXPECT_TRUE(flat->flat[floor]);
-  EXPECT_EQ(flat->possible[floor], Bits{0});
-  EXPECT_FALSE(flat->evidence.has(floor));
+  EXPECT_TRUE(evidenceTile(*flat).flat[floor]);
+  EXPECT_EQ(evidenceTile(*flat).possible[floor], Bits{0});
+  EXPECT_FALSE(evidenceTile(*flat).evidence.has(floor));
   const auto [high, post] = at(12.25, 1.25);
-  EXPECT_FALSE(high->flat[post]);
-  EXPECT_TRUE(high->evidence.has(post));
-  EXPECT_EQ(high->possible[post] & ~lowBits(ground + 5), Bits{0}) << "nothing above the post";
-  EXPECT_EQ(high->possible[post] & lowBits(ground), Bits{0}) << "nothing below the floor";
-  EXPECT_EQ(high->possible[post] & high->occupied[post], high->occupied[post]);
+  const EvidenceTile& high_state = evidenceTile(*high);
+  EXPECT_FALSE(high_state.flat[post]);
+  EXPECT_TRUE(high_state.evidence.has(post));
+  EXPECT_EQ(high_state.possible[post] & ~lowBits(ground + 5), Bits{0}) << "nothing above the post";
+  EXPECT_EQ(high_state.possible[post] & lowBits(ground), Bits{0}) << "nothing below the floor";
+  EXPECT_EQ(high_state.possible[post] & high->occupied[post], high->occupied[post]);
   // Whether the ground cell was seen free decides what becomes of the points above it.
   const auto [hole, foot] = at(11.25, 1.25);
-  EXPECT_EQ(hole->possible[foot], Bits{3} << ground);
+  EXPECT_EQ(evidenceTile(*hole).possible[foot], Bits{3} << ground);
 }
 
 TEST(MapCleaner, MemoryDoesNotGrowWithTheNumberOfScans) {

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "beautymap/cleaner/map_cleaner.h"
+#include "beautymap/evidence/evidence_judgement.h"
 #include "test_scenes.h"
 
 namespace beautymap {
@@ -118,14 +120,10 @@ TEST(OnlineMap, ScansOfAKnownGroundGiveTheMapOfAReplay) {
   MapCleaner cleaner(config);
   for (const LabelledScan& scan : scans) {
     add(map, scan.scan);
-    cleaner.observe(scan.scan);
   }
-  cleaner.estimateGround();
-  for (const LabelledScan& scan : scans) cleaner.encode(scan.scan);
-  for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
-  cleaner.segmentGround();
-  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const LabelledScan& scan : scans) f(scan.scan);
+  });
   int differing = 0, dynamic = 0;
   for (const LabelledScan& scan : scans) {
     const Classes online = classesOf(map, scan.scan);
@@ -160,18 +158,18 @@ TEST(OnlineMap, CellsAreJudgedByTheirEvidenceAlsoWhenTheGroundFell) {
   OnlineMap map{Config()};
   for (int i = 0; i < 6; ++i) add(map, lookAhead(yard({person(2, 1)})).scan);
   for (int i = 0; i < 6; ++i) add(map, look({}).scan);
-  const MapJudgement judgement{Config()};
+  const EvidenceJudgement judgement{Config()};
   int judged = 0;
   std::as_const(map).map().forEachTile([&](ColumnIndex, const Tile& tile) {
     Tile again = tile;
     for (std::size_t column = 0; column < Tile::kColumns; ++column) {
       judgement.judgeEvidence(again, column, ~Bits{0});
-      judged += again.suspected[column] != 0 ? 1 : 0;
+      judged += evidenceTile(again).suspected[column] != 0 ? 1 : 0;
     }
-    EXPECT_EQ(again.suspected, tile.suspected);
-    EXPECT_EQ(again.strong, tile.strong);
-    EXPECT_EQ(again.leaning, tile.leaning);
-    EXPECT_EQ(again.unknown, tile.unknown);
+    EXPECT_EQ(evidenceTile(again).suspected, evidenceTile(tile).suspected);
+    EXPECT_EQ(evidenceTile(again).strong, evidenceTile(tile).strong);
+    EXPECT_EQ(evidenceTile(again).leaning, evidenceTile(tile).leaning);
+    EXPECT_EQ(evidenceTile(again).unknown, evidenceTile(tile).unknown);
   });
   EXPECT_GT(judged, 0);
   const LabelledScan visit = lookAhead(yard({person(2, 1)}));
@@ -215,9 +213,6 @@ TEST(OnlineMap, APoseThatIsNotFiniteLeavesTheMapUnchanged) {
 
 TEST(OnlineMap, ConfigurationsThatNeedTheFinishedMapAreRefused) {
   Config config;
-  config.evidence.enabled = false;
-  EXPECT_THROW(OnlineMap{config}, ConfigError);
-  config = Config();
   config.coarse_ground.enabled = false;
   EXPECT_THROW(OnlineMap{config}, ConfigError);
 }

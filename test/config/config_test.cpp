@@ -69,6 +69,7 @@ std::string valueOf(const Config& config, const std::string& name) {
 }
 
 bool isBool(const ParameterInfo& p) { return p.min == "false"; }
+bool isChoice(const ParameterInfo& p) { return !p.choices.empty(); }
 bool isInteger(const ParameterInfo& p) {
   return p.unit == "bits" || p.unit == "columns" || p.unit == "beams" || p.unit == "scans" ||
          p.unit == "gaps";
@@ -102,7 +103,7 @@ TEST(Config, EveryParameterTakesItsLimits) {
 
 TEST(Config, EveryParameterIsRefusedOutsideItsRangeWithNameValueAndRange) {
   for (const ParameterInfo& p : listParameters(Config())) {
-    if (isBool(p)) continue;
+    if (isBool(p) || isChoice(p)) continue;
     const double step = isInteger(p) ? 1.0 : 0.001;
     for (const double value : {std::stod(p.min) - step, std::stod(p.max) + step, -1e300, 1e300}) {
       std::ostringstream written;
@@ -125,7 +126,8 @@ TEST(Config, ValuesOfAnotherTypeAreRefused) {
     for (const std::string& value : values) {
       const std::string error = errorOfSetting(p.name + "=" + value);
       EXPECT_TRUE(contains(error, p.name)) << p.name << " took '" << value << "' " << error;
-      EXPECT_TRUE(contains(error, isBool(p) ? "true or false" : p.max)) << error;
+      const std::string choices = isBool(p) ? "true or false" : p.choices;
+      EXPECT_TRUE(contains(error, choices.empty() ? p.max : choices)) << error;
     }
   }
 }
@@ -201,6 +203,8 @@ TEST(Config, WhatIsWrittenIsReadAgain) {
       std::ostringstream value;
       if (isBool(p)) {
         value << std::boolalpha << random.chance(0.5);
+      } else if (isChoice(p)) {
+        value << (random.chance(0.5) ? p.min : p.max);
       } else if (isInteger(p)) {
         value << random.integer(std::stoi(p.min), std::stoi(p.max));
       } else {
@@ -210,6 +214,7 @@ TEST(Config, WhatIsWrittenIsReadAgain) {
     }
     config.scan.max_range = config.scan.min_range + 1.0;  // no contradictions
     config.matrix.res_h = config.fine_ground.bin_height + 1.0;
+    config.matrix.res_g = config.matrix.room_res_g = std::max(0.2, config.matrix.res_g);
     config.matrix.bits_below = std::min(config.matrix.bits_below, config.matrix.n_bit - 1);
     expectEqual(load(toYaml(config)), config);
   }
@@ -280,10 +285,10 @@ TEST(Config, ThePaperFilesHaveThePublishedSettings) {
   EXPECT_EQ(kitti.matrix.n_bit, 32);
   EXPECT_EQ(kitti.matrix.roi_size, 40.0);
   EXPECT_EQ(kitti.matrix.bits_below, 0);
-  EXPECT_FALSE(kitti.evidence.enabled);
+  EXPECT_EQ(kitti.judgement.method, "published");
   const Config indoor = loadConfig(folder + "/paper_indoor.yaml");
   EXPECT_EQ(indoor.matrix.bits_below, 0);
-  EXPECT_FALSE(indoor.evidence.enabled);
+  EXPECT_EQ(indoor.judgement.method, "published");
   EXPECT_EQ(indoor.matrix.res_g, 0.5);
   EXPECT_EQ(indoor.matrix.res_h, 0.2);
   EXPECT_EQ(indoor.matrix.n_bit, 32);
@@ -295,8 +300,8 @@ TEST(Config, TheReadmeListsEveryParameterWithDefaultRangeAndMeaning) {
   const std::string readme((std::istreambuf_iterator<char>(stream)),
                            std::istreambuf_iterator<char>());
   for (const ParameterInfo& p : listParameters(Config())) {
-    const std::string row = "| `" + p.name + "` | " + p.value + " | " + p.min + " to " + p.max +
-                            (p.unit.empty() ? "" : " " + p.unit) + " | " + p.meaning + " |";
+    const std::string row =
+        "| `" + p.name + "` | " + p.value + " | " + p.range() + " | " + p.meaning + " |";
     EXPECT_TRUE(contains(readme, row)) << "README.md lacks: " << row;
   }
 }

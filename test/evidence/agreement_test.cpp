@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/evidence/agreement.h"
 
+#include "beautymap/evidence/object_growth.h"
+
 #include <gtest/gtest.h>
 
 #include "test_scenes.h"

@@ -48,19 +48,20 @@ void fill(Tile& tile, std::size_t column, int bit, const std::vector<double>& he
           const FineGroundConfig& config) {
   tile.occupied[column] = Bits{0b11} << bit;
   for (const double height : heights) {
-    const int bin = fineBinOf(static_cast<float>(height), bins, config);
+    const int bin =
+        FineGround(cellsOf(bins * config.bin_height), config).binInCell(static_cast<float>(height));
     ++tile.fine_counts[column * static_cast<std::size_t>(bins) + static_cast<std::size_t>(bin)];
   }
 }
 
 TEST(FineGround, BinsCoverTheCellAndNotMore) {
-  EXPECT_EQ(fineBinCount(cellsOf(0.5), fineConfig(0.1, 0.85)), 5);
-  EXPECT_EQ(fineBinCount(cellsOf(0.2), fineConfig(0.1, 0.85)), 2);
-  EXPECT_EQ(fineBinCount(cellsOf(0.25), fineConfig(0.1, 0.85)), 3);
-  EXPECT_EQ(fineBinCount(cellsOf(0.1), fineConfig(0.1, 0.85)), 1);
+  EXPECT_EQ(FineGround(cellsOf(0.5), fineConfig(0.1, 0.85)).bins(), 5);
+  EXPECT_EQ(FineGround(cellsOf(0.2), fineConfig(0.1, 0.85)).bins(), 2);
+  EXPECT_EQ(FineGround(cellsOf(0.25), fineConfig(0.1, 0.85)).bins(), 3);
+  EXPECT_EQ(FineGround(cellsOf(0.1), fineConfig(0.1, 0.85)).bins(), 1);
   for (int bins = 1; bins <= 60; ++bins) {
     for (const double height : {0.01, 0.03, 0.07, 0.1}) {
-      EXPECT_EQ(fineBinCount(cellsOf(bins * height), fineConfig(height, 0.85)), bins);
+      EXPECT_EQ(FineGround(cellsOf(bins * height), fineConfig(height, 0.85)).bins(), bins);
     }
   }
 }
@@ -69,16 +70,20 @@ TEST(FineGround, APointLiesInTheBinOfItsHeight) {
   const FineGroundConfig config = fineConfig(0.125, 0.85);
   for (int bin = 0; bin < 4; ++bin) {
     for (const float within : {0.0F, 0.06F, 0.12F}) {
-      EXPECT_EQ(fineBinOf(0.125F * static_cast<float>(bin) + within, 4, config), bin);
+      EXPECT_EQ(FineGround(cellsOf(4 * config.bin_height), config)
+                    .binInCell(0.125F * static_cast<float>(bin) + within),
+                bin);
     }
   }
-  EXPECT_EQ(fineBinOf(-1e-6F, 4, config), 0) << "rounding below the cell";
-  EXPECT_EQ(fineBinOf(0.5F, 4, config), 3) << "rounding above the cell, and the top bit";
+  EXPECT_EQ(FineGround(cellsOf(4 * config.bin_height), config).binInCell(-1e-6F), 0)
+      << "rounding below the cell";
+  EXPECT_EQ(FineGround(cellsOf(4 * config.bin_height), config).binInCell(0.5F), 3)
+      << "rounding above the cell, and the top bit";
 }
 
 TEST(FineGround, HeightsFarAboveTheTopBitAreInTheLastBin) {
   for (const float height : {1e3F, 1e8F, 1e12F, 1e30F}) {
-    EXPECT_EQ(fineBinOf(height, 5, fineConfig(0.01, 0.85)), 4) << height;
+    EXPECT_EQ(FineGround(cellsOf(0.05), fineConfig(0.01, 0.85)).binInCell(height), 4) << height;
   }
 }
 
@@ -99,7 +104,7 @@ TEST(FineGround, SplitsAColumnLikeItsListOfPoints) {
     const FineGroundConfig config =
         fineConfig(random.pick<double>({0.03125, 0.0625, 0.125}), random.uniform(0.01, 0.99));
     const double res_h = random.pick<double>({0.25, 0.5, 1.0});
-    const int bins = fineBinCount(cellsOf(res_h), config);
+    const int bins = FineGround(cellsOf(res_h), config).bins();
     TileMap map(bins);
     Tile& tile = map.tileAt({-1, 0});
     std::vector<std::vector<double>> columns(Tile::kColumns);
@@ -117,7 +122,8 @@ TEST(FineGround, SplitsAColumnLikeItsListOfPoints) {
     for (std::size_t column = 0; column < columns.size(); ++column) {
       const std::vector<bool> expected = groundPoints(columns[column], res_h, config);
       for (std::size_t i = 0; i < columns[column].size(); ++i) {
-        const int bin = fineBinOf(static_cast<float>(columns[column][i]), bins, config);
+        const int bin = FineGround(cellsOf(bins * config.bin_height), config)
+                            .binInCell(static_cast<float>(columns[column][i]));
         ASSERT_EQ(bin < tile.static_bins[column], expected[i])
             << "seed " << seed << " column " << column << " height " << columns[column][i];
       }
@@ -154,7 +160,7 @@ TEST(FineGround, AGroundCellInTheTopBitHasNoUpperNeighbour) {
 TEST(FineGround, ManyBinsDoNotWrapAround) {
   // The finest bins in the highest cell that the parameters' ranges allow.
   const FineGroundConfig config = fineConfig(0.01, 1.0);
-  const int bins = fineBinCount(cellsOf(5.0), config);
+  const int bins = FineGround(cellsOf(5.0), config).bins();
   ASSERT_EQ(bins, 500);
   TileMap map(bins);
   Tile& tile = map.tileAt({0, 0});

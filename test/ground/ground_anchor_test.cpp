@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "beautymap/ground/ground_layer.h"
 #include "test_scenes.h"
 
 namespace beautymap {
@@ -14,88 +13,38 @@ namespace {
 
 constexpr std::size_t kColumn = 37;
 
-Config dyadicConfig() {
-  Config config;
-  config.matrix.res_h = 0.25;
-  config.ground_layer.bin_height = 0.0625;
+MatrixConfig dyadicConfig() {
+  MatrixConfig config;
+  config.res_h = 0.25;
   return config;
 }
 
-/// A tile with random cells, evidence and counts in one column, anchored at 0.
-Tile randomColumn(test::Random& random, const Config& config) {
-  Tile tile(GroundLayer(config.ground_layer, config.matrix.res_h).bins());
-  tile.ground[kColumn] = 0.0F;
-  tile.occupied[kColumn] = random.bits() & lowBits(config.matrix.n_bit);
-  for (int i = 0; i < 20; ++i) {
-    const Bits mask = lowBits(config.matrix.n_bit);
-    tile.evidence.touch(kColumn).observe(random.bits() & random.bits() & mask,
-                                         random.bits() & mask);
-  }
-  for (std::uint32_t& count : tile.fine_counts) count = static_cast<std::uint32_t>(random.bits());
-  return tile;
-}
-
-TEST(GroundAnchor, EverythingOfAColumnMovesByTheSameHeight) {
-  for (std::uint32_t seed = 0; seed < 50; ++seed) {
-    test::Random random(seed);
-    Config config = dyadicConfig();
-    config.matrix.n_bit = random.pick<int>({24, 40, 64});
-    Tile before = randomColumn(random, config);
-    before.floors.touch(kColumn).bit = 20;
-    Tile after = before;
-    const int bits = random.integer(-12, 12);
-    moveBottom(after, kColumn, static_cast<float>(-bits * config.matrix.res_h), config);
-    for (int bit = 0; bit < config.matrix.n_bit - 1; ++bit) {
-      const int from = bit - bits;
-      const bool inside = from >= 0 && from < config.matrix.n_bit;
-      const auto& old = before.evidence[kColumn];
-      const auto& moved = after.evidence[kColumn];
-      EXPECT_EQ(after.occupied[kColumn] >> bit & 1,
-                inside ? before.occupied[kColumn] >> from & 1 : 0U);
-      EXPECT_EQ(moved.hits(bit), inside ? old.hits(from) : 0);
-      EXPECT_EQ(moved.freeBefore(bit), inside ? old.freeBefore(from) : 0);
-      EXPECT_EQ(moved.freeBetween(bit), inside ? old.freeBetween(from) : 0);
-      EXPECT_EQ(moved.freeAfter(bit), inside ? old.freeAfter(from) : 0);
-    }
-    EXPECT_EQ(after.floors[kColumn].bit, 20 + bits);
-    const int bins = before.fineBins();
-    for (int bin = 0; bin < bins; ++bin) {
-      const int from = bin - 4 * bits;
-      const auto at = [&](const Tile& tile, int i) {
-        return tile
-            .fine_counts[kColumn * static_cast<std::size_t>(bins) + static_cast<std::size_t>(i)];
-      };
-      EXPECT_EQ(at(after, bin), from >= 0 && from < bins ? at(before, from) : 0U) << bits;
-    }
-  }
-}
-
 TEST(GroundAnchor, WhatRisesAboveTheHighestBitCountsAsThatBit) {
-  const Config config = dyadicConfig();
+  const MatrixConfig config = dyadicConfig();
   Tile tile(1);
   tile.ground[kColumn] = 0.0F;
   tile.occupied[kColumn] = Bits{1} << 60;
-  moveBottom(tile, kColumn, -2.5F, config);
+  EXPECT_EQ(moveBottom(tile, kColumn, -2.5F, config), 10);
   EXPECT_EQ(tile.occupied[kColumn], Bits{1} << 63);
 }
 
 TEST(GroundAnchor, SmallMovesLeaveTheCellsWhereTheyAre) {
-  const Config config = dyadicConfig();
+  const MatrixConfig config = dyadicConfig();
   Tile tile(14);
-  EXPECT_FALSE(anchorColumn(tile, kColumn, 1.0F, 0.1, config));
+  EXPECT_EQ(anchorColumn(tile, kColumn, 1.0F, 0.1, false, config), 0);
   EXPECT_EQ(tile.ground[kColumn], 1.0F);
   tile.occupied[kColumn] = 0b1000;
-  EXPECT_FALSE(anchorColumn(tile, kColumn, 1.0625F, 0.1, config));
+  EXPECT_EQ(anchorColumn(tile, kColumn, 1.0625F, 0.1, true, config), 0);
   EXPECT_EQ(tile.ground[kColumn], 1.0F) << "the cells are anchored there";
-  EXPECT_TRUE(anchorColumn(tile, kColumn, 0.75F, 0.1, config));
+  EXPECT_EQ(anchorColumn(tile, kColumn, 0.75F, 0.1, true, config), 1);
   EXPECT_EQ(tile.ground[kColumn], 0.75F);
   EXPECT_EQ(tile.occupied[kColumn], Bits{0b10000});
 }
 
 TEST(GroundAnchor, AnEmptyColumnIsAnchoredAtTheLatestEstimate) {
   Tile tile(14);
-  anchorColumn(tile, kColumn, 1.0F, 0.1, dyadicConfig());
-  EXPECT_FALSE(anchorColumn(tile, kColumn, 1.0625F, 0.1, dyadicConfig()));
+  anchorColumn(tile, kColumn, 1.0F, 0.1, false, dyadicConfig());
+  EXPECT_EQ(anchorColumn(tile, kColumn, 1.0625F, 0.1, false, dyadicConfig()), 0);
   EXPECT_EQ(tile.ground[kColumn], 1.0625F);
 }
 
@@ -127,21 +76,6 @@ TEST(GroundAnchor, OtherColumnsTakeTheGroundOfTheNearestOne) {
     }
   }
   EXPECT_EQ(groundOfOtherColumns(Tile(1), {})[0], Tile::kNoHeight);
-}
-
-TEST(GroundAnchor, WhatIsAboveFreeSpaceIsNoGround) {
-  const Config config;
-  Tile tile(1);
-  tile.ground[7] = 10.0F;
-  EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 13.1F, config)) << "nothing was seen";
-  tile.occupied[7] = Bits{1} << 15;
-  for (int scan = 0; scan < config.evidence.min_free_in_order; ++scan) {
-    EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 13.1F, config)) << "seen free too seldom";
-    tile.evidence.touch(7).observe(tile.occupied[7], Bits{1} << 12);
-  }
-  EXPECT_TRUE(hangsOverFreeSpace(tile, 7, 13.1F, config));
-  EXPECT_FALSE(hangsOverFreeSpace(tile, 7, 12.7F, config)) << "beams that graze it end there";
-  EXPECT_FALSE(hangsOverFreeSpace(tile, 8, 13.1F, config)) << "another column";
 }
 
 }  // namespace

@@ -10,15 +10,17 @@
 #include <limits>
 #include <vector>
 
+#include "ground/whole_bins.h"
 #include "test_scenes.h"
 
 namespace beautymap {
 namespace {
 
+using test::kBottom;
+using test::kCell;
 using test::Random;
-
-constexpr double kBottom = -0.1;  // of the lowest bin, above the coarse ground [m]
-constexpr double kCell = 0.2;     // height of a bit [m]
+using test::randomCount;
+using test::WholeBins;
 
 /// The sum of twelve uniform values is as good as normally distributed.
 double noise(Random& random, double sigma) {
@@ -203,50 +205,6 @@ TEST(GroundLayer, NoHeightIsOutsideTheRangeOfBins) {
   EXPECT_EQ(layer.binOf(test::kNan), -1);
 }
 
-/// The heights are whole numbers of bins, so that nothing has to be rounded.
-struct WholeBins {
-  explicit WholeBins(Random& random) {
-    config.bin_height = random.pick<double>({0.02, 0.05, 0.1});
-    below = static_cast<int>(std::lround(-kBottom / config.bin_height));
-    search = random.integer(1, 15);
-    thickness = random.integer(1, 9);
-    config.search_height = search * config.bin_height;
-    config.max_thickness = thickness * config.bin_height;
-    config.tail_share = random.pick<double>({0.0, 0.1, 0.25, 0.5, 1.0});
-    config.min_low_peak = random.pick<double>({0.0, 0.25, 0.5, 1.0});
-  }
-
-  int bins() const { return below + search + thickness; }
-
-  int groundBins(const std::uint32_t* counts, bool object_above) const {
-    int peak = 0, low_peak = 0;
-    for (int i = 1; i < below + search; ++i) {
-      if (counts[i] > counts[peak]) peak = i;
-      const bool in_cell = i < static_cast<int>(std::lround((kCell - kBottom) / config.bin_height));
-      if (in_cell && counts[i] > counts[low_peak]) low_peak = i;
-    }
-    if (object_above && counts[low_peak] >= config.min_low_peak * counts[peak]) peak = low_peak;
-    if (counts[peak] == 0) return 0;
-    int ground = 0;
-    for (int i = 0; i < bins(); ++i) {
-      if (i > peak && counts[i] < config.tail_share * counts[peak]) break;
-      if (i > peak + thickness) break;
-      ground = i + 1;
-    }
-    return ground;
-  }
-
-  GroundLayerConfig config;
-  int below = 0;
-  int search = 0;
-  int thickness = 0;
-};
-
-std::uint32_t randomCount(Random& random) {
-  if (random.chance(0.3)) return 0;
-  return static_cast<std::uint32_t>(random.integer(0, random.pick<int>({3, 20, 1000000})));
-}
-
 TEST(GroundLayer, AgreesWithPlainLoopsOnRandomCounts) {
   for (std::uint32_t seed = 0; seed < 3000; ++seed) {
     Random random(seed);
@@ -262,77 +220,6 @@ TEST(GroundLayer, AgreesWithPlainLoopsOnRandomCounts) {
           << "seed " << seed;
     }
   }
-}
-
-TEST(GroundLayer, EachColumnOfAMapGetsItsOwn) {
-  Random random(7);
-  const WholeBins whole(random);
-  const GroundLayer layer(whole.config, kCell);
-  TileMap map(layer.bins());
-  for (const ColumnIndex tile : {ColumnIndex{0, 0}, ColumnIndex{-3, 5}}) {
-    for (std::uint32_t& count : map.tileAt(tile).fine_counts) count = randomCount(random);
-  }
-  constexpr int kGroundBit = 8;
-  map.forEachTile([&](ColumnIndex, Tile& tile) {
-    for (std::size_t i = 0; i < tile.dynamic.size(); ++i) {
-      tile.dynamic[i] = Bits{1} << (kGroundBit + random.integer(1, 2));
-      tile.evidence.touch(i).observe(Bits{1} << kGroundBit, 0);
-      for (int free = random.integer(0, 3); free > 0; --free) {
-        tile.evidence.touch(i).observe(0, Bits{1} << kGroundBit);
-      }
-    }
-    findGroundLayers(tile, layer, kGroundBit, EvidenceConfig());
-  });
-  int tiles = 0, objects = 0;
-  map.forEachTile([&](ColumnIndex, const Tile& tile) {
-    ++tiles;
-    for (std::size_t i = 0; i < tile.static_bins.size(); ++i) {
-      const std::size_t first = i * static_cast<std::size_t>(layer.bins());
-      const std::uint32_t* counts = tile.fine_counts.data() + first;
-      const bool object_above = tile.dynamic[i] == Bits{1} << (kGroundBit + 1);
-      const bool object =
-          object_above && tile.evidence[i].freeAfter(kGroundBit) > 1 && !layer.standsOut(counts);
-      ASSERT_EQ(tile.static_bins[i], object ? 0 : whole.groundBins(counts, object_above));
-      objects += object ? 1 : 0;
-    }
-  });
-  EXPECT_EQ(tiles, 2);
-  EXPECT_GT(objects, 50);
-}
-
-/// A column whose cells were hit in so many scans, from the ground cell up.
-ColumnEvidence hitColumn(int ground_bit, const std::vector<int>& hits) {
-  ColumnEvidence evidence;
-  for (int scan = 0; scan < *std::max_element(hits.begin(), hits.end()); ++scan) {
-    Bits hit = 0;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      if (scan < hits[i]) hit |= Bits{1} << (static_cast<std::size_t>(ground_bit) + i);
-    }
-    evidence.observe(hit, 0);
-  }
-  return evidence;
-}
-
-TEST(GroundLayer, TheLowestCellOfATallObjectMayBeTheObjectsWhereItWasHitAsSeldom) {
-  constexpr int kGroundBit = 8;
-  const EvidenceConfig config;
-  const Bits tall = Bits{0x3E} << kGroundBit;  // five cells above the ground cell
-  const auto may_be_object = [&](const std::vector<int>& hits, Bits dynamic) {
-    return mayBeObject(hitColumn(kGroundBit, hits), dynamic, 4.0, kGroundBit, config);
-  };
-  EXPECT_TRUE(may_be_object({3, 3, 3, 3, 3, 2}, tall));
-  EXPECT_FALSE(may_be_object({12, 3, 3, 3, 3, 2}, tall))
-      << "the ground was hit four times as often";
-  EXPECT_FALSE(may_be_object({3, 3, 12, 3, 3, 2}, tall)) << "noise of the poses lifts it";
-  EXPECT_FALSE(may_be_object({3, 3, 3}, Bits{0x6} << kGroundBit)) << "only noise is so low";
-  EXPECT_FALSE(may_be_object({13, 9, 9, 9, 9, 9}, tall)) << "it is well known";
-}
-
-TEST(GroundLayer, StrongEvidenceIsEnoughForTheLowestCellToBeOfAnObject) {
-  ColumnEvidence evidence;
-  evidence.observe(1, 0);
-  for (int scan = 0; scan < 2; ++scan) evidence.observe(0, 1);
-  EXPECT_TRUE(mayBeObject(evidence, 2, 4.0, 0, EvidenceConfig()));
 }
 
 }  // namespace

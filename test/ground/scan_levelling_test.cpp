@@ -218,12 +218,9 @@ class NoisyPoses : public testing::Test {
     config.matrix.room_res_g = 0.0;
     config.levelling.enabled = levelling;
     MapCleaner cleaner(config);
-    for (const LabelledScan& scan : scans_) cleaner.observe(scan.scan);
-    cleaner.estimateGround();
-    for (const LabelledScan& scan : scans_) cleaner.compare(scan.scan);
-    cleaner.segmentGround();
-    for (const LabelledScan& scan : scans_) cleaner.measureFloors(scan.scan);
-    cleaner.segmentFloors();
+    cleanMap(cleaner, [&](const auto& f) {
+      for (const LabelledScan& scan : scans_) f(scan.scan);
+    });
     return kept([&](const Scan& scan) { return cleaner.classify(scan); });
   }
 

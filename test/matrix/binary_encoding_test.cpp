@@ -158,15 +158,10 @@ TEST(BinaryEncoding, ARunHasTheBitsOfEachOfItsPoints) {
     ASSERT_EQ(scan.runs.size(), 1U);
     const MatrixConfig config = matrixConfig(0.5, 0.2, random.integer(2, kMaxBits));
     const BinaryEncoding encoding(config);
-    const HeightBins height_bins(config);
     const float ground = random.chance(0.1) ? Tile::kNoHeight : scan.z[0] - 1.0F;
-    Bits bits = 0, bins = 0;
-    for (const float z : scan.z) {
-      bits |= encoding.bit(z, ground);
-      bins |= height_bins.bin(z);
-    }
+    Bits bits = 0;
+    for (const float z : scan.z) bits |= encoding.bit(z, ground);
     EXPECT_EQ(encoding.bits(scan, scan.runs[0], ground), bits) << "seed " << seed;
-    EXPECT_EQ(height_bins.bins(scan, scan.runs[0]), bins) << "seed " << seed;
   }
 }
 
@@ -202,34 +197,6 @@ TEST(ColumnGrid, BitHelpersAgreeWithLoopsOverTheBits) {
     ASSERT_EQ(highestBitIndex(column), high);
     ASSERT_EQ(lowestBit(column), Bits{1} << low);
   }
-}
-
-TEST(HeightBins, PossibleCellsContainEveryCellThatAPointIsIn) {
-  int possible = 0, occupied = 0;
-  for (std::uint32_t seed = 0; seed < 2000; ++seed) {
-    test::Random random(seed);
-    MatrixConfig config;
-    config.res_h = random.pick<double>({0.1, 0.2, 0.5});
-    config.n_bit = random.pick<int>({2, 32, 64});
-    const BinaryEncoding encoding(config);
-    const HeightBins bins(config);
-    const auto ground = static_cast<float>(random.uniform(-50.0, 50.0));
-    Bits heights = 0, cells = 0;
-    for (int i = random.integer(1, 20); i > 0; --i) {
-      const auto z = static_cast<float>(ground + random.uniform(-3.0, 40.0));
-      const double cell = (static_cast<double>(z) - static_cast<double>(ground)) / config.res_h;
-      if (std::abs(cell - std::round(cell)) < 1e-3) continue;  // rounding decides
-      heights |= bins.bin(z);
-      cells |= encoding.bit(z, ground);
-    }
-    const Bits found = bins.possibleCells(heights, ground);
-    ASSERT_EQ(cells & ~found, Bits{0}) << "seed " << seed;
-    ASSERT_EQ(found & ~lowBits(config.n_bit), Bits{0}) << "seed " << seed;
-    occupied += __builtin_popcountll(cells);
-    possible += __builtin_popcountll(found);
-  }
-  EXPECT_LT(possible, 4 * occupied);
-  EXPECT_EQ(HeightBins(MatrixConfig()).possibleCells(0, 1.0F), Bits{0});
 }
 
 }  // namespace

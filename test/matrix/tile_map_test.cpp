@@ -128,7 +128,7 @@ TEST(TileMap, WhereNoTileIsAWindowShowsTheAbsentValue) {
   }
 }
 
-TEST(TileMap, MergingAddsBitsWhereTilesAreAndNowhereElse) {
+TEST(TileMap, AWindowVisitsTheColumnsWhereTilesAreAndNoOthers) {
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     Random random(seed);
     TileMap map(1);
@@ -148,7 +148,9 @@ TEST(TileMap, MergingAddsBitsWhereTilesAreAndNowhereElse) {
         grid.at(x, y) = random.bits() & random.bits() & random.bits();
       }
     }
-    map.merge(grid, &Tile::occupied);
+    forEachColumn(map, grid.window(), [&](int x, int y, Tile& tile, std::size_t column) {
+      tile.occupied[column] |= grid.at(x, y);
+    });
     EXPECT_EQ(map.tileCount(), tiles);
     const ColumnWindow all{{-80, -80}, 160};
     const BitGrid merged = map.extract(all, &Tile::occupied, Bits{0});
@@ -195,6 +197,15 @@ TEST(TileMap, MemoryGrowsWithTilesAndNotWithPoints) {
   EXPECT_EQ(map.memoryBytes(), one);
   map.tileAt({-1, 0});
   EXPECT_EQ(map.memoryBytes(), 2 * one);
+}
+
+TEST(TileMap, NeighboursAreTheExistingTilesAroundEachOnce) {
+  TileMap map(1);
+  for (int x = 0; x < 4; ++x) map.tileAt({x, 0});
+  EXPECT_EQ(withNeighbours(map, {{0, 0}, {1, 0}}, 21).size(), 3U);
+  EXPECT_EQ(withNeighbours(map, {{3, 0}}, 21).size(), 2U);
+  EXPECT_TRUE(withNeighbours(map, {}, 21).empty());
+  EXPECT_EQ(tilesOf(map).size(), 4U);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ using test::OutputFolder;
 
 Config testConfig() {
   Config config;
-  config.evidence.enabled = false;
+  config.judgement.method = "published";
+  config.levelling.enabled = false;
   config.matrix.bits_below = 0;
   config.matrix.res_g = 1.0;
   config.matrix.room_res_g = 0.0;
@@ -77,15 +78,9 @@ std::vector<PointClass> classesOf(const std::vector<SourceScan>& sources,
     scans.push_back(scan);
   }
   MapCleaner cleaner(config);
-  for (const Scan& scan : scans) cleaner.observe(scan);
-  cleaner.estimateGround();
-  if (cleaner.needsEncoding()) {
-    for (const Scan& scan : scans) cleaner.encode(scan);
-  }
-  for (const Scan& scan : scans) cleaner.compare(scan);
-  cleaner.segmentGround();
-  for (const Scan& scan : scans) cleaner.measureFloors(scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const Scan& scan : scans) f(scan);
+  });
   std::vector<PointClass> classes;
   for (const Scan& scan : scans) {
     const std::vector<PointClass> of_scan = cleaner.classify(scan);
@@ -304,9 +299,9 @@ TEST(OfflineCleaner, TheSameInputGivesTheSameBytes) {
 }
 
 TEST(OfflineCleaner, AnyNumberOfThreadsGivesTheSameBytes) {
-  for (const bool evidence : {false, true}) {
+  for (const char* method : {"published", "evidence"}) {
     Config config = testConfig();
-    config.evidence.enabled = evidence;
+    config.judgement.method = method;
     const OutputFolder one, several;
     for (const OutputFolder* folder : {&one, &several}) {
       const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,

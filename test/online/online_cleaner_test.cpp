@@ -192,6 +192,30 @@ TEST(OnlineCleaner, SessionsThatCannotBeContinuedAreRefused) {
   EXPECT_THROW(OnlineCleaner(Config(), "").loadSession(folder / "a.session"), InputError);
 }
 
+TEST(OnlineCleaner, ASessionOfTheOtherJudgementIsRefusedWithBothNames) {
+  const TempFolder folder;
+  Config published;
+  published.judgement.method = "published";
+  const std::string file = folder / "a.session";
+  for (const auto& [first, second] :
+       {std::make_pair(Config(), published), std::make_pair(published, Config())}) {
+    OnlineCleaner cleaner(first, "");
+    add(cleaner, street(), 0, 3);
+    cleaner.saveSession(file, "map");
+    OnlineCleaner again(first, "");
+    again.loadSession(file);
+    EXPECT_EQ(saved(again), saved(cleaner));
+    try {
+      OnlineCleaner(second, "").loadSession(file);
+      FAIL() << "it was loaded";
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find("evidence"), std::string::npos) << what;
+      EXPECT_NE(what.find("published"), std::string::npos) << what;
+    }
+  }
+}
+
 TEST(OnlineCleaner, AFolderThatIsMissingLeavesTheMap) {
   OnlineCleaner cleaner(Config(), "");
   add(cleaner, street(), 0, 2);

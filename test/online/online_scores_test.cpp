@@ -59,14 +59,11 @@ void expectScoresOfAReplay(const std::string& scene, const std::string& sensor) 
   for (const LabelledScan& scan : scans) {
     map.addHits(scan.scan);
     map.addSeenFree();
-    cleaner.observe(scan.scan);
   }
   map.settle();
-  cleaner.estimateGround();
-  for (const LabelledScan& scan : scans) cleaner.compare(scan.scan);
-  cleaner.segmentGround();
-  for (const LabelledScan& scan : scans) cleaner.measureFloors(scan.scan);
-  cleaner.segmentFloors();
+  cleanMap(cleaner, [&](const auto& f) {
+    for (const LabelledScan& scan : scans) f(scan.scan);
+  });
   Score online, replay;
   for (const LabelledScan& scan : scans) {
     count(scan, map.classify(scan.scan), online);

@@ -23,6 +23,7 @@ import rosgraph
 import roslib.packages
 import rospy
 import rostest
+import yaml
 from beautymap.msg import ScanReport
 from beautymap.srv import LoadMap, SaveMap
 from diagnostic_msgs.msg import DiagnosticArray
@@ -303,6 +304,43 @@ class Online(unittest.TestCase):
             part.header.stamp = time
         return message
 
+    def check_published(self, nodelet):
+        config = yaml.safe_load((PACKAGE / "config/paper_kitti.yaml").read_text())
+        config["online"]["map_voxel"] = 0.0
+        offline = self.folder / "published"
+        self.run_tool("replay", self.bag, "--output", offline, "--config",
+                      PACKAGE / "config/paper_kitti.yaml")
+        parameters = {**config, **self.parameters(online=config["online"])}
+        with running(parameters, nodelet=nodelet) as node:
+            play(self.bag, rate=2.0)
+            report = node.wait_for_scans(SCANS)
+            self.assertEqual(report.dropped_scans, 0)
+            self.assertEqual(report.thinned_scans, 0)
+            for stage in ("binary_encoding", "matrix_comparison", "sight_mask",
+                          "reverse_ray_casting", "fine_ground"):
+                self.assertIn(stage, report.stages)
+            saved = node.call("save_map", SaveMap, path="map.pcd", voxel=0.0, session=True)
+            self.assertTrue(saved.success, saved.message)
+            self.assertGreater(saved.removed_points, 100)
+            self.assertGreaterEqual(agreement(self.folder / "out/map", offline), 0.97)
+            node.call("reset", Empty)
+            loaded = node.call("load_map", LoadMap, path="map.session")
+            self.assertTrue(loaded.success, loaded.message)
+            again = node.call("save_map", SaveMap, path="again.pcd", voxel=0.0, session=False)
+            self.assertTrue(again.success, again.message)
+            self.assertEqual(agreement(self.folder / "out/again", self.folder / "out/map"), 1.0)
+
+    def test_the_published_method_runs_in_the_node(self):
+        self.check_published(nodelet=False)
+        with running(self.parameters()) as node:
+            refused = node.call("load_map", LoadMap, path="map.session")
+            self.assertFalse(refused.success)
+            self.assertIn("published", refused.message)
+            self.assertIn("evidence", refused.message)
+
+    def test_the_published_method_runs_in_the_nodelet(self):
+        self.check_published(nodelet=True)
+
     def test_odometry_gives_the_poses(self):
         bag = self.rewrite("odometry.bag", lambda topic, message, t:
                            [] if topic in ("/tf", "/tf_static") else [(topic, message, t)])
@@ -443,8 +481,9 @@ class Online(unittest.TestCase):
             self.check_map(node)
 
     def test_a_looped_bag_begins_a_new_map_or_goes_on(self):
-        for reset in (True, False):
-            with running(self.parameters(reset_on_time_jump=reset)) as node:
+        for reset, method in ((True, "evidence"), (False, "evidence"), (True, "published")):
+            with running(self.parameters(reset_on_time_jump=reset,
+                                         judgement={"method": method})) as node:
                 play(self.bag, rate=4.0)
                 node.wait_for_scans(SCANS)
                 play(self.bag, rate=4.0)
@@ -634,7 +673,7 @@ class Online(unittest.TestCase):
                                      ({"matrix": {"res_g": -1.0}}, "matrix.res_g"),
                                      ({"matrix": {"resolution": 1.0}}, "matrix.resolution"),
                                      ({"queue_size": 0}, "~queue_size"),
-                                     ({"evidence": {"enabled": False}}, "evidence.enabled"),
+                                     ({"judgement": {"method": "guessing"}}, "judgement.method"),
                                      ({"pose_source": "gps"}, "~pose_source")):
             node = Node(self.parameters(**parameters))
             self.assertEqual(node.process.wait(timeout=20), 1)

@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "beautymap/base/stage_times.h"
-#include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/config/config.h"
-#include "beautymap/evidence/agreement.h"
-#include "beautymap/evidence/beam_visibility.h"
-#include "beautymap/evidence/map_judgement.h"
 #include "beautymap/ground/scan_levelling.h"
+#include "beautymap/judgement/judgement.h"
 #include "beautymap/matrix/scan.h"
 #include "beautymap/matrix/tile_map.h"
 
@@ -31,8 +28,8 @@ namespace beautymap {
 /// Memory grows with the mapped area. Uses a second thread itself, but is not thread-safe.
 class OnlineMap {
  public:
-  /// @throws ConfigError when the configuration contradicts itself, or is without evidence or
-  /// coarse ground, which a map that grows needs.
+  /// @throws ConfigError when the configuration contradicts itself, or is without coarse ground,
+  /// which a map that grows needs.
   explicit OnlineMap(const Config& config);
 
   /// @return one class per point of the scan's cloud; valid until the next call
@@ -44,7 +41,7 @@ class OnlineMap {
   /// state before; a tile's revision becomes another one when its points may be judged otherwise.
   void settle();
   bool isDynamic(const Tile& tile, std::size_t column, float z) const {
-    return judgement_.isDynamic(tile, column, z);
+    return judgement_->isDynamic(tile, column, z);
   }
   /// What the map says, as of settle(), about the points of any scan.
   /// @return one class per point of its cloud
@@ -68,37 +65,15 @@ class OnlineMap {
   void addLowest();
   void updateGround();
   void estimateStaleGround(ColumnIndex index, Tile& tile);
-  void addOccupied();
-  void addHitEvidence();
-  /// What a scan says about the cells of one column.
-  struct Seen {
-    Bits hit, free, few;
-  };
-  /// @param seen_at  (x, y in the window of hits_) -> Seen
-  template <typename F>
-  void addEvidence(F seen_at);
-  /// The dynamic cells of the present scan: those of the map, and what of the scan belongs to them.
-  void findDynamicInScan();
-  void classifyLive();
 
   Config config_;
-  MapJudgement judgement_;
+  std::unique_ptr<const Judgement> judgement_;
   TileMap map_;
-  BeamImage beams_;
   DroppedPoints dropped_;
   StageTimes times_;
   std::optional<double> z_origin_;
   PlacedScan placed_;  ///< the last scan
-  BitGrid hits_;       ///< its matrix
-  BitGrid dynamic_in_scan_;
-
-  // Of one scan; members so that their memory is used again.
-  HeightGrid ground_;
-  struct Half {
-    BitGrid candidates, seen_free, few;
-  };
-  std::array<Half, 2> halves_;
-  EvidenceWindow live_;
+  std::unique_ptr<ScanFindings> findings_;
   std::vector<PointClass> classes_;
   /// Columns whose lowest height fell, or whose ground was seen to be none.
   std::vector<ColumnIndex> lowered_;

@@ -2,20 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "beautymap/config/config.h"
+#include "beautymap/config/evidence_config.h"
+#include "beautymap/evidence/evidence_window.h"
 #include "beautymap/matrix/column_grid.h"
 
 namespace beautymap {
-
-/// The cells of a window of the map, by what their own evidence says.
-struct EvidenceWindow {
-  BitGrid occupied;
-  BitGrid suspected;   ///< held for dynamic
-  BitGrid strong;      ///< those of the suspected ones whose evidence is strong
-  BitGrid leaning;     ///< not suspected, but seen free before or after their hits
-  BitGrid unknown;     ///< never seen free, and seldom hit
-  BitGrid flickering;  ///< hit and free in turns, as the edges of what stays are
-};
 
 /// The suspected cells that stand without support: a moving object fills neighbouring cells, an
 /// edge or a leaf does not. A cell is supported when, of the occupied cells among its 26 neighbours
@@ -44,22 +35,6 @@ BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const Agreem
 /// it.
 /// @return  for the columns one in from the window's border; no bits at the border
 BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
-
-/// Adds, round by round, the leaning and unknown cells that join dynamic ones as parts of the same
-/// object: a share of their occupied neighbours is dynamic, and they do not rest on a cell that
-/// stays (what is seen over the roof of a parked car is no reason to remove the roof). Sparse scans
-/// leave gaps in an object: where nothing stays within two cells, the cells within two are the
-/// neighbours, too. The two columns at the window's border do not change.
-/// @param dynamic  the dynamic cells of the same window
-void growObjects(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
-                 const AgreementConfig& config);
-
-/// Takes away, from outside to inside, dynamic cells that are but the flickering edges of what
-/// stays (a bush, a fence, a rim): more than flicker_share of the dynamic cells around flickers,
-/// and less than join_share of the occupied ones is dynamic by its own evidence.
-/// @param dynamic  the dynamic cells of the same window; its border does not change
-void excludeFlicker(const EvidenceWindow& window, BitGrid& dynamic, int ground_bit,
-                    const AgreementConfig& config);
 
 /// How far from its border a window is needed to know the dynamic cells within [columns].
 int agreementMargin(const AgreementConfig& config);

@@ -3,11 +3,25 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 #include "beautymap/config/config.h"
+#include "beautymap/matrix/sparse_columns.h"
 #include "beautymap/matrix/tile_map.h"
 
 namespace beautymap {
+
+/// A cell above the ground that stays while something moved on its surface, and the heights of its
+/// points: see FloorLayer.
+struct FloorCell {
+  static constexpr int kBins = 8;
+  using Counts = std::array<std::uint32_t, kBins>;
+  std::int32_t bit = -1;             ///< of the column; -1: none
+  std::int32_t static_bins = kBins;  ///< bins, from below, that stay
+  Counts counts{};                   ///< points per bin, since the cell is known as a floor
+};
+using FloorCells = SparseColumns<FloorCell, Tile::kColumns>;
 
 /// The surface in a floor cell (a deck, a step, a storey's floor, on which something moved), from
 /// the heights of the cell's points: what lies above it goes with the moving cell above.
@@ -40,6 +54,6 @@ int floorBit(Bits occupied, Bits dynamic, int ground_bit);
 /// Notes the floor cells of a tile, whose points count from then on, and divides those that hold
 /// counts.
 /// @return  whether a cell is divided otherwise than before
-bool findFloors(Tile& tile, const FloorLayer& layer, int ground_bit);
+bool findFloors(const Tile& tile, FloorCells& floors, const FloorLayer& layer, int ground_bit);
 
 }  // namespace beautymap

@@ -13,21 +13,44 @@
 #include <utility>
 #include <vector>
 
-#include "beautymap/evidence/evidence.h"
-#include "beautymap/matrix/binary_encoding.h"
+#include "beautymap/matrix/byte_stream.h"
 #include "beautymap/matrix/column_grid.h"
-#include "beautymap/matrix/sparse_columns.h"
+#include "beautymap/matrix/scan.h"
 
 namespace beautymap {
 
-/// A cell above the ground that stays while something moved on its surface, and the heights of its
-/// points: see FloorLayer.
-struct FloorCell {
-  static constexpr int kBins = 8;
-  using Counts = std::array<std::uint32_t, kBins>;
-  std::int32_t bit = -1;             ///< of the column; -1: none
-  std::int32_t static_bins = kBins;  ///< bins, from below, that stay
-  Counts counts{};                   ///< points per bin, since the cell is known as a floor
+/// What a judgement remembers of the columns of one tile.
+class TileState {
+ public:
+  virtual ~TileState() = default;
+  virtual std::unique_ptr<TileState> clone() const = 0;
+  virtual std::size_t memoryBytes() const = 0;
+  /// Of what a session goes on with.
+  virtual void write(ByteSink& sink) const = 0;
+  /// @return  whether what was read is consistent
+  virtual bool read(ByteSource& source) = 0;
+};
+
+/// Owns a state; a copy has one of its own.
+class TileStatePointer {
+ public:
+  TileStatePointer() = default;
+  explicit TileStatePointer(std::unique_ptr<TileState> state) : state_(std::move(state)) {}
+  TileStatePointer(const TileStatePointer& other)
+      : state_(other.state_ ? other.state_->clone() : nullptr) {}
+  TileStatePointer(TileStatePointer&&) = default;
+  TileStatePointer& operator=(TileStatePointer other) {
+    state_ = std::move(other.state_);
+    return *this;
+  }
+  ~TileStatePointer() = default;
+
+  explicit operator bool() const { return state_ != nullptr; }
+  TileState& operator*() { return *state_; }
+  const TileState& operator*() const { return *state_; }
+
+ private:
+  std::unique_ptr<TileState> state_;
 };
 
 /// A square of columns, one array per quantity. Heights are [m] above the map's z origin.
@@ -37,14 +60,20 @@ struct Tile {
   static constexpr int kColumns = kSide * kSide;
   static constexpr float kNoHeight = std::numeric_limits<float>::infinity();
 
-  explicit Tile(int fine_bins)
-      : fine_counts(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(fine_bins), 0) {
+  explicit Tile(int fine_bins, TileStatePointer of_judgement = {})
+      : fine_counts(static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(fine_bins), 0),
+        state(std::move(of_judgement)) {
     lowest.fill(kNoHeight);
-    highest.fill(-kNoHeight);
     ground.fill(kNoHeight);
   }
 
   int fineBins() const { return static_cast<int>(fine_counts.size()) / kColumns; }
+  const std::uint32_t* fineCounts(std::size_t column) const {
+    return fine_counts.data() + column * static_cast<std::size_t>(fineBins());
+  }
+  std::uint32_t* fineCounts(std::size_t column) {
+    return fine_counts.data() + column * static_cast<std::size_t>(fineBins());
+  }
 
   std::array<float, kColumns> lowest;   ///< lowest point; kNoHeight: no point
   std::array<float, kColumns> ground;   ///< bottom of bit 0: coarse ground g_ij, less bits_below
@@ -52,34 +81,24 @@ struct Tile {
   std::array<std::uint8_t, kColumns> level_scans{};   ///< of how many, up to 255
   std::array<std::uint8_t, kColumns> below_ground{};  ///< holds below-ground outliers
   std::array<Bits, kColumns> occupied{};              ///< M_ij of the map
-  std::array<Bits, kColumns> suspected{};             ///< cells dynamic by their own evidence
-  std::array<Bits, kColumns> strong{};      ///< those of the suspected cells with strong evidence
-  std::array<Bits, kColumns> leaning{};     ///< cells with some evidence for dynamic, not enough
-  std::array<Bits, kColumns> unknown{};     ///< cells never seen free and seldom hit
-  std::array<Bits, kColumns> flickering{};  ///< cells that change as the edges of what stays do
-  std::array<Bits, kColumns> dynamic{};     ///< cells that are removed
+  std::array<Bits, kColumns> dynamic{};               ///< cells that are removed
   std::array<std::uint16_t, kColumns>
-      static_bins{};  ///< fine bins of the ground cell that stay; 0: all
-  SparseColumns<ColumnEvidence, kColumns> evidence;  ///< of columns that were observed
-  std::vector<std::uint32_t> fine_counts;            ///< points per fine bin of the ground cell
-  SparseColumns<FloorCell, kColumns> floors;         ///< of columns that have one
-
-  // Of maps of which all points are known before they are judged (MapCleaner).
-  std::array<float, kColumns> highest;    ///< highest point; -kNoHeight: no point
-  std::array<Bits, kColumns> possible{};  ///< cells that can be judged; HeightBins of all points
-                                          ///< until the ground is known
-  std::bitset<kColumns> flat;  ///< columns of which all points lie in the ground cell: all stay
+      static_bins{};                       ///< fine bins of the ground cell that stay; 0: all
+  std::vector<std::uint32_t> fine_counts;  ///< points per fine bin of the ground cell
+  TileStatePointer state;                  ///< the judgement's own
 
   // Of maps that grow (OnlineMap).
   std::bitset<kColumns> stale_ground;  ///< columns whose ground must be estimated again
-  bool unsettled = false;              ///< cells changed since their agreement was judged
+  bool unsettled = false;              ///< cells changed since they were judged
   std::uint64_t revision = 0;  ///< becomes another one when points may be judged differently
 };
 
 /// The map's matrix: unbounded, in tiles that exist where points are.
 class TileMap {
  public:
-  explicit TileMap(int fine_bins) : fine_bins_(fine_bins) {}
+  /// @param state  what each new tile begins with
+  explicit TileMap(int fine_bins, std::unique_ptr<TileState> state = nullptr)
+      : fine_bins_(fine_bins), state_(std::move(state)) {}
 
   static ColumnIndex tileOf(ColumnIndex column) {
     return {column.x >> Tile::kShift, column.y >> Tile::kShift};
@@ -95,6 +114,8 @@ class TileMap {
             tiles * Tile::kSide + 2 * margin};
   }
 
+  /// One that is empty, outside of the map.
+  Tile newTile() const { return Tile(fine_bins_, state_); }
   Tile& tileAt(ColumnIndex tile);
   void erase(ColumnIndex tile) { tiles_.erase(keyOf(tile)); }
   const Tile* findTile(ColumnIndex tile) const;
@@ -107,9 +128,6 @@ class TileMap {
   template <typename T>
   ColumnGrid<T> extract(ColumnWindow window, std::array<T, Tile::kColumns> Tile::*quantity,
                         T absent, ColumnGrid<T> recycled = {}) const;
-
-  /// ORs a window of bits into one quantity of the tiles that exist.
-  void merge(const BitGrid& grid, std::array<Bits, Tile::kColumns> Tile::*quantity);
 
   /// Calls f(tile index, tile) for each tile, in no particular order.
   template <typename F>
@@ -136,7 +154,15 @@ class TileMap {
 
   std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_;
   int fine_bins_;
+  TileStatePointer state_;
 };
+
+/// All tiles of a map.
+std::vector<ColumnIndex> tilesOf(const TileMap& map);
+
+/// Tiles of a map and those within so many columns of each, each once.
+std::vector<ColumnIndex> withNeighbours(const TileMap& map, const std::vector<ColumnIndex>& tiles,
+                                        int columns);
 
 /// Looks up the tiles of columns that come in any order. Neighbouring points mostly share a tile,
 /// so the last one is kept. @tparam Map  const TileMap: nullptr where no tile is; TileMap: tiles

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "beautymap/config/config.h"
+#include "beautymap/matrix/byte_stream.h"
 #include "beautymap/matrix/tile_map.h"
 #include "beautymap/online/point_store.h"
 
@@ -14,7 +15,7 @@ namespace beautymap {
 
 /// A file of tiles with all their state, from which a map can go on. For the machine and the
 /// version that wrote it, not for exchange. Beside its target until close().
-class TileFileWriter {
+class TileFileWriter : private ByteSink {
  public:
   /// What all tiles of a file share.
   struct Header {
@@ -25,24 +26,24 @@ class TileFileWriter {
 
   /// @throws InputError when the file cannot be made, or (append, close) the disk is full.
   TileFileWriter(std::string path, const Header& header, const Config& config);
-  ~TileFileWriter();
+  ~TileFileWriter() override;
   TileFileWriter(const TileFileWriter&) = delete;
   TileFileWriter& operator=(const TileFileWriter&) = delete;
   void append(ColumnIndex index, const Tile& tile, const TilePoints& points);
   void close();
 
  private:
-  void write(const void* data, std::size_t size);
+  void write(const void* data, std::size_t size) override;
 
   std::string path_;
   std::string temporary_path_;
   std::FILE* file_ = nullptr;
 };
 
-class TileFileReader {
+class TileFileReader : private ByteSource {
  public:
-  /// @throws InputError when it is no such file, or was written with another matrix than the
-  /// configuration's, whose bits and bins would mean something else.
+  /// @throws InputError when it is no such file, or was written with another matrix or
+  /// judgement than the configuration's, whose bits and bins would mean something else.
   TileFileReader(const std::string& path, const Config& config);
 
   const TileFileWriter::Header& header() const { return header_; }
@@ -56,9 +57,8 @@ class TileFileReader {
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  void read(void* data, std::size_t size);
-  template <typename T>
-  void readVector(std::vector<T>& values);
+  void read(void* data, std::size_t size) override;
+  std::size_t checkedCount(std::uint64_t bytes, std::size_t value_size) const override;
 
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "beautymap/evidence/evidence.h"
+#include "beautymap/evidence/column_evidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "beautymap/evidence/map_judgement.h"
+#include "beautymap/evidence/evidence_judgement.h"
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,16 @@ void changeTile(Tile& tile, test::Random& random) {
     if (random.chance(0.3)) continue;
     const Bits cells = Bits{0x1f} << random.integer(8, 10);
     tile.occupied[column] |= cells;
-    for (int i = random.integer(0, 3); i > 0; --i) tile.evidence.touch(column).observe(cells, 0);
+    for (int i = random.integer(0, 3); i > 0; --i)
+      evidenceTile(tile).evidence.touch(column).observe(cells, 0);
     const Bits free = random.chance(0.5) ? cells : random.bits();
-    for (int i = random.integer(0, 6); i > 0; --i) tile.evidence.touch(column).observe(0, free);
+    for (int i = random.integer(0, 6); i > 0; --i)
+      evidenceTile(tile).evidence.touch(column).observe(0, free);
   }
   for (std::uint32_t& count : tile.fine_counts) count += random.chance(0.5) ? 1 : 0;
 }
 
-void judge(const MapJudgement& judgement, TileMap& map, const std::vector<ColumnIndex>& tiles,
+void judge(const EvidenceJudgement& judgement, TileMap& map, const std::vector<ColumnIndex>& tiles,
            const Config& config) {
   const std::vector<ColumnIndex> affected =
       withNeighbours(map, tiles, agreementMargin(config.agreement));
@@ -35,14 +37,14 @@ void judge(const MapJudgement& judgement, TileMap& map, const std::vector<Column
   judgement.segmentGround(map, affected);
 }
 
-TEST(MapJudgement, JudgingWhatChangedEqualsJudgingEverything) {
+TEST(EvidenceJudgement, JudgingWhatChangedEqualsJudgingEverything) {
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     test::Random random(seed);
     Config config;
     config.agreement.enabled = seed != 0;
     config.ground_layer.enabled = seed != 1;
-    const MapJudgement judgement(config);
-    TileMap map(judgement.fineBins());
+    const EvidenceJudgement judgement(config);
+    TileMap map = judgement.newMap();
     for (int x = -2; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) changeTile(map.tileAt({x, y}), random);
     }
@@ -67,12 +69,12 @@ TEST(MapJudgement, JudgingWhatChangedEqualsJudgingEverything) {
 }
 
 /// Runs near the ground of several columns; one column is known to be flat.
-TEST(MapJudgement, CountsTheGroundPointsOfRunsAsPointByPoint) {
+TEST(EvidenceJudgement, CountsTheGroundPointsOfRunsAsPointByPoint) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     test::Random random(seed);
     Config config;
     config.ground_layer.enabled = random.chance(0.5);
-    const MapJudgement judgement(config);
+    const EvidenceJudgement judgement(config);
     std::vector<Eigen::Vector3d> points;
     for (int run = 0; run < 200; ++run) {
       const double x = random.uniform(0.0, 8.0), z = random.uniform(-0.5, 1.5);
@@ -88,24 +90,15 @@ TEST(MapJudgement, CountsTheGroundPointsOfRunsAsPointByPoint) {
       alone.emplace_back(9.25, 9.25, 9.0);
     }
     const PlacedScan single = test::placedScan({0, 0}, {0.0, 0.0, 0.0}, alone);
-    TileMap of_runs(judgement.fineBins()), of_points(judgement.fineBins());
+    TileMap of_runs = judgement.newMap(), of_points = judgement.newMap();
     for (TileMap* map : {&of_runs, &of_points}) {
-      map->tileAt({0, 0}).ground.fill(-judgement.belowGround());
-      map->tileAt({0, 0}).flat.set(3 << Tile::kShift);
+      map->tileAt({0, 0}).ground.fill(-depthBelowGround(config.matrix));
+      evidenceTile(map->tileAt({0, 0})).flat.set(3 << Tile::kShift);
     }
     judgement.countGroundPoints(of_runs, scan);
     judgement.countGroundPoints(of_points, single);
     EXPECT_EQ(of_runs.tileAt({0, 0}).fine_counts, of_points.tileAt({0, 0}).fine_counts);
   }
-}
-
-TEST(MapJudgement, NeighboursAreTheExistingTilesAroundEachOnce) {
-  TileMap map(1);
-  for (int x = 0; x < 4; ++x) map.tileAt({x, 0});
-  EXPECT_EQ(withNeighbours(map, {{0, 0}, {1, 0}}, 21).size(), 3U);
-  EXPECT_EQ(withNeighbours(map, {{3, 0}}, 21).size(), 2U);
-  EXPECT_TRUE(withNeighbours(map, {}, 21).empty());
-  EXPECT_EQ(tilesOf(map).size(), 4U);
 }
 
 }  // namespace
