@@ -167,7 +167,7 @@ std::vector<ColumnIndex> EvidenceJudgement::addSeenFree(TileMap& map, const Plac
   inTwoThreads(found.seen.size(),
                [&](std::size_t i) { found.findSeen(found.seen[i], scan, config_); });
   clock.lap("beam_visibility");
-  const auto no_ground = observeCells(map, window, [&](int x, int y) {
+  auto no_ground = observeCells(map, window, [&](int x, int y) {
     const auto& half = found.seen[x < middle ? 0 : 1];
     return Seen{0, half.free.at(x, y), half.few.at(x, y)};
   });
