@@ -13,7 +13,7 @@ struct LevellingConfig {
   void describe(Visitor& v) {
     v("enabled", enabled, false, true, "",
       "tilt and raise scans whose ground does not lie where the other scans' does, before they are "
-      "judged (only with evidence)");
+      "judged");
     v("radius", radius, 5, 400, "columns", "half size of the square whose ground is looked at");
     v("min_correction", min_correction, 0.0, 1.0, "m",
       "scans that would move by less, root mean square, stay as they are");
