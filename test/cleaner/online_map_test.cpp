@@ -11,53 +11,22 @@
 
 #include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/evidence/evidence_judgement.h"
+#include "cleaner/yard.h"
 #include "test_scenes.h"
 
 namespace beautymap {
 namespace {
 
 using Classes = std::vector<PointClass>;
+using test::add;
 using test::Box;
 using test::BoxWorld;
+using test::kVisitor;
 using test::LabelledScan;
-
-/// Walls around a yard, in which a box is where `visitor` says.
-BoxWorld yard(const std::vector<Box>& visitor) {
-  BoxWorld world;
-  world.boxes = {{{-12, -12, 0}, {-11, 12, 4}},
-                 {{11, -12, 0}, {12, 12, 4}},
-                 {{-12, -12, 0}, {12, -11, 4}},
-                 {{-12, 11, 0}, {12, 12, 4}}};
-  world.boxes.insert(world.boxes.end(), visitor.begin(), visitor.end());
-  return world;
-}
-constexpr int kVisitor = 4;  ///< index of the visitor's box
-
-Box person(double x, double y) { return {{x - 0.3, y - 0.3, 0.0}, {x + 0.3, y + 0.3, 1.8}}; }
-
-LabelledScan look(const std::vector<Box>& visitor, const Eigen::Vector3d& offset = {0, 0, 0}) {
-  LabelledScan labelled =
-      test::castScan(yard(visitor), Eigen::Vector3d(0.1, 0.2, 1.5), 64, -25.0, 15.0, 720);
-  labelled.scan.T_map_cloud = Eigen::Translation3d(offset);
-  labelled.scan.sensor_in_map += offset;
-  return labelled;
-}
-
-void add(OnlineMap& map, const Scan& scan) {
-  map.addHits(scan);
-  map.addSeenFree();
-}
-
-/// Share of a visitor's points, higher than the ground layer, with a class.
-double shareOf(const LabelledScan& labelled, const Classes& classes, PointClass wanted) {
-  int all = 0, found = 0;
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    if (labelled.box[i] != kVisitor || labelled.scan.cloud[i].z < 0.45F) continue;
-    ++all;
-    found += classes[i] == wanted ? 1 : 0;
-  }
-  return all == 0 ? -1.0 : static_cast<double>(found) / all;
-}
+using test::look;
+using test::person;
+using test::shareOf;
+using test::yard;
 
 /// What the map says now about the points of a scan.
 Classes classesOf(OnlineMap& map, const Scan& scan) {

@@ -9,48 +9,21 @@
 
 #include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/cleaner/online_map.h"
+#include "cleaner/yard.h"
 #include "test_scenes.h"
 
 namespace beautymap {
 namespace {
 
 using Classes = std::vector<PointClass>;
-using test::Box;
-using test::BoxWorld;
+using test::add;
 using test::LabelledScan;
-
-constexpr int kVisitor = 4;  ///< index of the visitor's box
-
-/// Walls around a yard, and a box in it.
-LabelledScan look(const std::vector<Box>& visitor) {
-  BoxWorld world;
-  world.boxes = {{{-12, -12, 0}, {-11, 12, 4}},
-                 {{11, -12, 0}, {12, 12, 4}},
-                 {{-12, -12, 0}, {12, -11, 4}},
-                 {{-12, 11, 0}, {12, 12, 4}}};
-  world.boxes.insert(world.boxes.end(), visitor.begin(), visitor.end());
-  return test::castScan(world, Eigen::Vector3d(0.1, 0.2, 1.5), 64, -25.0, 15.0, 720);
-}
-
-Box person(double x, double y) { return {{x - 0.3, y - 0.3, 0.0}, {x + 0.3, y + 0.3, 1.8}}; }
+using test::look;
+using test::person;
+using test::shareOf;
 
 Config publishedConfig() {
   return loadConfig(std::string(BEAUTYMAP_SOURCE_DIR) + "/config/paper_indoor.yaml");
-}
-
-void add(OnlineMap& map, const Scan& scan) {
-  map.addHits(scan);
-  map.addSeenFree();
-}
-
-double shareOf(const LabelledScan& labelled, const Classes& classes, PointClass wanted) {
-  int all = 0, found = 0;
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    if (labelled.box[i] != kVisitor || labelled.scan.cloud[i].z < 0.45F) continue;
-    ++all;
-    found += classes[i] == wanted ? 1 : 0;
-  }
-  return all == 0 ? -1.0 : static_cast<double>(found) / all;
 }
 
 TEST(PublishedOnline, WhatEntersACellThatOneScanSawFreeIsDynamicAtOnce) {
