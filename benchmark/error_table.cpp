@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// beautymap_error_table INPUT [group.parameter=value...]: where a replay of a labelled input is
-// wrong, by height above the ground and by range, as the tables of docs/accuracy.md. Each point
-// counts with the class it got: no neighbour within 0.05 m saves it.
+// beautymap_error_table INPUT [moving_labels=1,2] [group.parameter=value...]: where a replay of a
+// labelled input is wrong, by height above the ground and by range, as the tables of
+// docs/accuracy.md. Each point counts with the class it got: no neighbour within 0.05 m saves it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -72,11 +72,10 @@ std::string interval(double low, double high, bool last) {
   return last ? metres(low) + " m and more" : metres(low) + " to " + metres(high) + " m";
 }
 
-void run(const std::vector<LabelledScan>& scans, const Config& config) {
+void run(const std::vector<LabelledScan>& scans, const Config& given) {
+  const Config config = withCellSize(scans, given);
   MapCleaner cleaner(config);
-  cleanMap(cleaner, [&](const auto& f) {
-    for (const LabelledScan& labelled : scans) f(labelled.scan);
-  });
+  judge(scans, cleaner);
 
   const MatrixConfig& matrix = config.matrix;
   Table heights(kHeights), ranges(kRanges);
@@ -84,7 +83,9 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
     const Scan& scan = labelled.scan;
     const std::vector<PointClass> classes = cleaner.classify(scan);
     for (std::size_t i = 0; i < classes.size(); ++i) {
-      if (classes[i] == PointClass::kDropped) continue;
+      const PointLabel label = labelled.labels[i];
+      if (classes[i] == PointClass::kDropped || label == PointLabel::kIgnored) continue;
+      const bool moving = label == PointLabel::kMoving;
       const pcl::PointXYZ& point = scan.cloud[i];
       const Eigen::Vector3d in_map = scan.T_map_cloud * Eigen::Vector3d(point.x, point.y, point.z);
       const ColumnIndex column = columnOf(in_map, matrix.res_g);
@@ -92,8 +93,8 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
       const double bottom = tile.ground[static_cast<std::size_t>(TileMap::indexInTile(column))];
       const double bit = std::floor((in_map.z() - cleaner.zOrigin() - bottom) / matrix.res_h);
       const bool kept = classes[i] == PointClass::kStatic;
-      heights.add(bit - matrix.bits_below + 1.0, labelled.moving[i], kept);
-      ranges.add((in_map - scan.sensor_in_map).norm() / kRangeStep, labelled.moving[i], kept);
+      heights.add(bit - matrix.bits_below + 1.0, moving, kept);
+      ranges.add((in_map - scan.sensor_in_map).norm() / kRangeStep, moving, kept);
     }
   }
   heights.print("height", [&](std::size_t row) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// beautymap_online_scores INPUT [group.parameter=value...]: what the labels of an input say about
-// the online mode, beside the replay of the same scans. Each point counts with the class it got: no
-// neighbour within 0.05 m saves it.
+// beautymap_online_scores INPUT [moving_labels=1,2] [group.parameter=value...]: what the labels of
+// an input say about the online mode, beside the replay of the same scans. Each point counts with
+// the class it got: no neighbour within 0.05 m saves it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -18,14 +18,6 @@ namespace {
 
 using Classes = std::vector<PointClass>;
 
-void count(const LabelledScan& scan, const Classes& classes, Score& score) {
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    const bool kept = classes[i] == PointClass::kStatic;
-    ++(scan.moving[i] ? score.dynamic_points : score.static_points);
-    if (kept) ++(scan.moving[i] ? score.kept_dynamic : score.kept_static);
-  }
-}
-
 void print(const char* name, const Score& score) {
   std::printf("%-14s SA %.2f DA %.2f AA %.2f HA %.2f\n", name, score.SA(), score.DA(), score.AA(),
               score.HA());
@@ -37,7 +29,8 @@ void printTimes(const char* name, std::vector<double> ms) {
               ms[ms.size() * 99 / 100]);
 }
 
-void run(const std::vector<LabelledScan>& scans, const Config& config) {
+void run(const std::vector<LabelledScan>& scans, const Config& given) {
+  const Config config = withCellSize(scans, given);
   Score live, finished, offline;
   std::vector<double> hits_ms, free_ms;
   OnlineMap map(config);
@@ -54,9 +47,7 @@ void run(const std::vector<LabelledScan>& scans, const Config& config) {
     free_ms.push_back(Milliseconds(Clock::now() - published).count());
   }
   MapCleaner cleaner(config);
-  cleanMap(cleaner, [&](const auto& f) {
-    for (const LabelledScan& scan : scans) f(scan.scan);
-  });
+  judge(scans, cleaner);
   std::size_t points = 0, agreeing = 0;
   for (const LabelledScan& scan : scans) {
     const Classes replayed = cleaner.classify(scan.scan);

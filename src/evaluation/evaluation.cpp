@@ -112,8 +112,8 @@ void Evaluator::addKept(bool moving, std::uint64_t count) {
 }
 
 void Evaluator::addUnmatched(const Eigen::Vector3d& point, bool moving) {
-  ++(moving ? known_.dynamic_points : known_.static_points);
   if (!point.allFinite()) return;
+  ++(moving ? known_.dynamic_points : known_.static_points);
   const std::uint64_t cell = cellOf(point);
   shelfOf(cell).add({cell, point, moving ? 0U : 1U, moving ? 1U : 0U});
 }

@@ -31,6 +31,11 @@ void refuseBagOptions(const std::string& folder, const SourceOptions& options) {
 std::unique_ptr<ScanSource> openFolder(const std::string& folder, const SourceOptions& options) {
   if (SemanticKittiSource::accepts(folder)) {
     refuseBagOptions(folder, options);
+    if (options.moving_labels != SourceOptions().moving_labels) {
+      throw InputError(folder +
+                       ": is a SemanticKITTI sequence, whose moving classes are 252 to 259; "
+                       "--moving-labels is for bags and PCD folders");
+    }
     return std::make_unique<SemanticKittiSource>(folder, options);
   }
   if (PcdFolderSource::accepts(folder)) {
@@ -44,6 +49,10 @@ void checkOptions(const SourceOptions& options) {
   if (options.stride < 1) throw InputError("stride must be at least 1");
   if (!(options.start_s >= 0.0) || !(options.duration_s >= 0.0)) {
     throw InputError("start and duration must not be negative");
+  }
+  const std::vector<std::uint32_t>& moving = options.moving_labels;
+  if (moving.empty() || std::find(moving.begin(), moving.end(), 0) != moving.end()) {
+    throw InputError("moving labels must be numbers other than 0, which means static");
   }
 }
 

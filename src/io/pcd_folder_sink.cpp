@@ -38,16 +38,18 @@ pcl::PCLPointCloud2 groundTruthLayout(std::uint8_t coordinate_type) {
 }
 
 template <typename Coordinate>
-void appendPoints(const pcl::PCLPointCloud2& cloud, const std::vector<bool>& moving,
+void appendPoints(const pcl::PCLPointCloud2& cloud, const std::vector<PointLabel>& labels,
                   PcdStreamWriter& writer) {
   const FieldReader coordinates[] = {{cloud, "x"}, {cloud, "y"}, {cloud, "z"}};
   std::uint8_t record[3 * sizeof(Coordinate) + sizeof(float)];
-  for (std::size_t i = 0; i < moving.size(); ++i) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    // Not every evaluation knows a third value.
+    if (labels[i] == PointLabel::kIgnored) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto value = static_cast<Coordinate>(coordinates[axis](i));
       std::memcpy(record + axis * sizeof(value), &value, sizeof(value));
     }
-    const float intensity = moving[i] ? 1.0F : 0.0F;
+    const float intensity = labels[i] == PointLabel::kMoving ? 1.0F : 0.0F;
     std::memcpy(record + 3 * sizeof(Coordinate), &intensity, sizeof(intensity));
     writer.append(record);
   }
@@ -76,10 +78,10 @@ void PcdFolderSink::write(const SourceScan& scan) {
     as_float64_ = scan.T_map_sensor.translation().cwiseAbs().maxCoeff() > kFloat32Range;
   }
   pcl::PCLPointCloud2 cloud = moveCloud(scan.cloud, scan.T_map_cloud, as_float64_);
-  const std::vector<bool> moving = movingPoints(cloud, source_);
-  clearStaticLabels(cloud, source_);
+  const std::vector<PointLabel> labels = labelsOf(scan.cloud, source_);
+  unifyLabels(cloud, source_);
   writeScan(cloud, scan.T_map_sensor);
-  if (!moving.empty()) appendGroundTruth(cloud, moving);
+  if (!labels.empty()) appendGroundTruth(cloud, labels);
   ++scans_;
 }
 
@@ -95,15 +97,15 @@ void PcdFolderSink::writeScan(const pcl::PCLPointCloud2& cloud,
 }
 
 void PcdFolderSink::appendGroundTruth(const pcl::PCLPointCloud2& cloud,
-                                      const std::vector<bool>& moving) {
+                                      const std::vector<PointLabel>& labels) {
   if (ground_truth_ == nullptr) {
     ground_truth_ = std::make_unique<PcdStreamWriter>(
         (fs::path(temporary_path_) / "gt_cloud.pcd").string(),
         as_float64_ ? groundTruthLayout<double>(pcl::PCLPointField::FLOAT64)
                     : groundTruthLayout<float>(pcl::PCLPointField::FLOAT32));
   }
-  as_float64_ ? appendPoints<double>(cloud, moving, *ground_truth_)
-              : appendPoints<float>(cloud, moving, *ground_truth_);
+  as_float64_ ? appendPoints<double>(cloud, labels, *ground_truth_)
+              : appendPoints<float>(cloud, labels, *ground_truth_);
 }
 
 void PcdFolderSink::close() {

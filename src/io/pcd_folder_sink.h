@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "beautymap/io/moving_labels.h"
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_sink.h"
 
@@ -24,7 +25,7 @@ class PcdFolderSink : public ScanSink {
 
  private:
   void writeScan(const pcl::PCLPointCloud2& cloud, const Eigen::Isometry3d& T_map_sensor);
-  void appendGroundTruth(const pcl::PCLPointCloud2& cloud, const std::vector<bool>& moving);
+  void appendGroundTruth(const pcl::PCLPointCloud2& cloud, const std::vector<PointLabel>& labels);
 
   std::string path_;
   std::string temporary_path_;

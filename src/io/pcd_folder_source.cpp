@@ -57,6 +57,7 @@ bool PcdFolderSource::accepts(const std::filesystem::path& folder) {
 
 PcdFolderSource::PcdFolderSource(const std::filesystem::path& folder, const SourceOptions& options)
     : folder_(folder) {
+  moving_labels_ = options.moving_labels;
   if (options.start_s > 0.0 || options.duration_s > 0.0) {
     throw InputError(
         folder.string() +

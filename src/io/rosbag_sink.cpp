@@ -73,7 +73,7 @@ void RosbagSink::write(const SourceScan& scan) {
   ros::Time stamp;
   stamp.fromNSec(stamp_ns);
   pcl::PCLPointCloud2 cloud = inSensorFrame(scan);
-  clearStaticLabels(cloud, source_);
+  unifyLabels(cloud, source_);
   useMessageTypes(cloud);
   sensor_msgs::PointCloud2 message;
   pcl_conversions::moveFromPCL(cloud, message);

@@ -223,6 +223,7 @@ RosbagSource::RosbagSource(const std::vector<std::string>& paths, const SourceOp
       stride_(static_cast<std::size_t>(std::max(1, options.stride))),
       cloud_frame_(firstFrame<sensor_msgs::PointCloud2>(files_, topic_)),
       poses_(loadPoses(options)) {
+  moving_labels_ = options.moving_labels;
   const Window window = chooseWindow(files_, options);
   const auto view = files_.view(messagesOf(topic_), window.begin, window.end);
   size_ = (view->size() + stride_ - 1) / stride_;

@@ -97,6 +97,13 @@ void addSourceOptions(CLI::App& app, std::vector<std::string>& inputs, SourceOpt
   app.add_option("--stride", options.stride, "Use every n-th scan (default: 1)")
       ->check(CLI::Range(1, 1000000))
       ->group(group);
+  app.add_option(
+         "--moving-labels", options.moving_labels,
+         "Values of the field `label` in bags and PCD folders that mean moving, e.g. 1,2; 0 "
+         "means static, points with other values are not scored (default: 1)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(group);
 }
 
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& run) {

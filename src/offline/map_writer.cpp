@@ -65,7 +65,7 @@ void MapWriter::prepare(ScanView& view, SourceScan& scan, ScanOutput& output) {
   cleaner_.classify(view, output.classes);
   output.times = {};
   StageClock clock(output.times);
-  if (labelled_) output.moving = movingPoints(scan.cloud, source_);
+  if (labelled_) output.labels = labelsOf(scan.cloud, source_);
   moveCloud(scan.cloud, scan.T_map_cloud, report_.float64_coordinates, output.in_map);
   if (!thins()) split(output);
   clock.lap("write");
@@ -133,7 +133,10 @@ void MapWriter::splitRun(const Block& block, std::size_t first, std::size_t last
   const bool removed = output.classes[first] == PointClass::kDynamic;
   (removed ? output.removed : output.kept).points += last - first;
   for (std::size_t i = first; i < last; ++i) {
-    top_view.add(block.pixel(i), removed, labelled_ && output.moving[i]);
+    // What the label leaves open is no mistake either way.
+    const PointLabel label = labelled_ ? output.labels[i] : PointLabel::kStatic;
+    top_view.add(block.pixel(i), removed,
+                 label == PointLabel::kMoving || (label == PointLabel::kIgnored && removed));
   }
   if (!thins()) {
     put(block, first, last, true, output);
@@ -156,14 +159,15 @@ void MapWriter::put(const Block& block, std::size_t first, std::size_t last, boo
   }
   if (!labelled_) return;
   if (written && !removed) {
-    std::uint64_t moving = 0;
-    for (std::size_t i = first; i < last; ++i) moving += output.moving[i] ? 1 : 0;
-    output.kept_moving += moving;
-    output.kept_static += last - first - moving;
+    for (std::size_t i = first; i < last; ++i) {
+      output.kept_moving += output.labels[i] == PointLabel::kMoving ? 1 : 0;
+      output.kept_static += output.labels[i] == PointLabel::kStatic ? 1 : 0;
+    }
     return;
   }
   for (std::size_t i = first; i < last; ++i) {
-    output.unmatched.push_back({block.position(i), output.moving[i]});
+    if (output.labels[i] == PointLabel::kIgnored) continue;
+    output.unmatched.push_back({block.position(i), output.labels[i] == PointLabel::kMoving});
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/evaluation/evaluation.h"
+#include "beautymap/io/moving_labels.h"
 #include "beautymap/io/scan_source.h"
 #include "beautymap/offline/offline_cleaner.h"
 #include "beautymap/offline/pictures.h"
@@ -34,7 +35,7 @@ struct ScanOutput {
 
   pcl::PCLPointCloud2 in_map;  ///< all fields, x y z in the map frame
   std::vector<PointClass> classes;
-  std::vector<bool> moving;  ///< the labels; empty without
+  std::vector<PointLabel> labels;  ///< empty without
   Part kept, removed;
   std::uint64_t kept_static = 0, kept_moving = 0;  ///< labelled points that cleaned.pcd holds
   std::vector<Unmatched> unmatched;                ///< the other labelled ones

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 beautymap contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -15,6 +17,11 @@ using namespace beautymap;
 
 namespace {
 
+// Intensity of ground truth: 0 static, 1 moving, 2 and more ignored.
+constexpr double kMovingAbove = 0.5;
+constexpr double kIgnoredAbove = 1.5;
+
+/// f(position, intensity) for each point; the intensity is 0 where the file has none.
 template <typename F>
 void forEachPoint(const std::string& path, F f) {
   readPcdBlocks(path, [&](const pcl::PCLPointCloud2& block) {
@@ -22,7 +29,7 @@ void forEachPoint(const std::string& path, F f) {
     const bool labelled = FieldReader::has(block, "intensity");
     const FieldReader intensity(block, labelled ? "intensity" : "x");
     for (std::size_t i = 0; i < block.width; ++i) {
-      f(position(i), labelled && intensity(i) > 0.5);
+      f(position(i), labelled ? intensity(i) : 0.0);
     }
   });
 }
@@ -30,17 +37,23 @@ void forEachPoint(const std::string& path, F f) {
 Score evaluate(const std::string& ground_truth, const std::string& cleaned, double radius_m,
                std::size_t& cleaned_size) {
   std::vector<Eigen::Vector3d> map;
-  forEachPoint(cleaned, [&](const Eigen::Vector3d& point, bool) {
+  forEachPoint(cleaned, [&](const Eigen::Vector3d& point, double) {
     if (point.allFinite()) map.push_back(point);
   });
   cleaned_size = map.size();
   // A cleaned map in the order of the ground truth, as ours is, needs no search for what it kept.
   Evaluator evaluator(radius_m);
+  // It may hold ignored points, which the ground truth need not have.
+  constexpr std::ptrdiff_t kMostIgnored = 1000;
   auto next = map.begin();
-  forEachPoint(ground_truth, [&](const Eigen::Vector3d& point, bool moving) {
-    if (next != map.end() && point == *next) {
+  forEachPoint(ground_truth, [&](const Eigen::Vector3d& point, double intensity) {
+    if (!point.allFinite() || intensity > kIgnoredAbove) return;
+    const bool moving = intensity > kMovingAbove;
+    const auto last = next + std::min<std::ptrdiff_t>(kMostIgnored, map.end() - next);
+    const auto same = std::find(next, last, point);
+    if (same != last) {
       evaluator.addKept(moving);
-      ++next;
+      next = same + 1;
     } else {
       evaluator.addUnmatched(point, moving);
     }
@@ -59,7 +72,9 @@ int main(int argc, char** argv) {
       "radius.");
   std::string ground_truth, cleaned;
   double radius_m = 0.05;
-  app.add_option("GT", ground_truth, "PCD file with x y z intensity; intensity > 0.5 = moving")
+  app.add_option("GT", ground_truth,
+                 "PCD file with x y z intensity; 0: static, 1: moving, others: not scored, like "
+                 "points without a position")
       ->required();
   app.add_option("CLEANED", cleaned, "PCD file with x y z")->required();
   app.add_option("--radius", radius_m, "[m]")->check(CLI::Range(1e-4, 10.0))->capture_default_str();

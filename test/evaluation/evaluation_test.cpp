@@ -155,12 +155,12 @@ TEST(Evaluation, APointIsKeptOnceHoweverManyPointsAreNear) {
   EXPECT_EQ(evaluate({{p, false}}, {p, p, p + Eigen::Vector3d(0.01, 0, 0)}, 0.05).kept_static, 1U);
 }
 
-TEST(Evaluation, PointsThatAreNotFiniteCountAsRemoved) {
+TEST(Evaluation, PointsWithoutAPositionAreNotScored) {
   const double nan = test::kNan, infinity = test::kInfinity;
   const std::vector<Labelled> truth{
       {{nan, 0, 0}, false}, {{0, infinity, 0}, true}, {{0, 0, 0}, true}};
   const Score score = evaluate(truth, {{nan, 0, 0}, {0, infinity, 0}, {0, 0, -infinity}}, 0.05);
-  expectEqual(score, {1, 2, 0, 0});
+  expectEqual(score, {0, 1, 0, 0});
 }
 
 TEST(Evaluation, HugeCoordinatesAreHandled) {

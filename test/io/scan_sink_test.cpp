@@ -50,7 +50,7 @@ pcl::PCLPointCloud2 richCloud() {
   builder.field("ring", 4, 20).field("time", 8, 22).field("label", 2, 31).size(3, 32);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = static_cast<float>(i);
-    builder.set(i, 0, value).set(i, 4, value * 0.5F).set(i, 8, -value);
+    builder.set(i, 0, value + 1.0F).set(i, 4, value * 0.5F).set(i, 8, -value);
     builder.set(i, 31, static_cast<std::uint8_t>(i == 1));
   }
   return builder.build();
@@ -196,7 +196,7 @@ TEST_F(Sink, WritesClassesThatDoNotMoveAsLabelZero) {
     const auto scans = readAll(*openScanSource({folder_ / name}, {}));
     ASSERT_EQ(scans.size(), 2U);
     EXPECT_EQ(FieldReader(scans[0].cloud, "label")(0), 0);
-    EXPECT_EQ(FieldReader(scans[0].cloud, "label")(1), 253);
+    EXPECT_EQ(FieldReader(scans[0].cloud, "label")(1), 1);
   }
   EXPECT_EQ(FieldReader(readPcd(folder_ / "out/gt_cloud.pcd"), "intensity")(0), 0.0);
   EXPECT_EQ(FieldReader(readPcd(folder_ / "out/gt_cloud.pcd"), "intensity")(1), 1.0);

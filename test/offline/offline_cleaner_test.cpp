@@ -212,7 +212,9 @@ TEST(OfflineCleaner, ScoresEqualComparingAllPairsOfLabelsAndCleanedPoints) {
     const FieldReader x(scan.cloud, "x"), y(scan.cloud, "y"), z(scan.cloud, "z");
     const FieldReader label(scan.cloud, "label");
     for (std::size_t i = 0; i < scan.cloud.width; ++i) {
-      const Eigen::Vector3d p = scan.T_map_cloud * Eigen::Vector3d(x(i), y(i), z(i));
+      const Eigen::Vector3d measured(x(i), y(i), z(i));
+      if (!measured.allFinite() || measured.isZero(0.0)) continue;  // has no position
+      const Eigen::Vector3d p = scan.T_map_cloud * measured;
       bool kept = false;
       for (std::size_t c = 0; c < cleaned.width && !kept; ++c) {
         kept = (p - Eigen::Vector3d(cx(c), cy(c), cz(c))).norm() < 0.05;

@@ -36,7 +36,7 @@ class Evaluator {
   /// Ground-truth points that the cleaned map holds itself.
   void addKept(bool moving, std::uint64_t count = 1);
   /// A ground-truth point [m] that may or may not have a point of the cleaned map near it.
-  /// Non-finite ones count as removed.
+  /// Non-finite ones are not scored.
   void addUnmatched(const Eigen::Vector3d& point, bool moving);
 
   /// Between the last ground-truth point and the first one of the cleaned map.

@@ -2,17 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
 
-/// Whether each point of a normalized cloud is labelled as moving; empty without a `label` field.
-std::vector<bool> movingPoints(const pcl::PCLPointCloud2& cloud, const ScanSource& source);
+enum class PointLabel : std::uint8_t { kStatic, kMoving, kIgnored };
 
-/// Sets the labels of points that do not move to 0: in bags and PCD folders any other label means
-/// moving, whatever it means to `source`.
-void clearStaticLabels(pcl::PCLPointCloud2& cloud, const ScanSource& source);
+/// What the label of each point of a normalized cloud says; empty without a `label` field. Points
+/// without a position (not finite, or zero as drivers write where nothing came back) are ignored.
+/// @param cloud  as it came, not moved
+std::vector<PointLabel> labelsOf(const pcl::PCLPointCloud2& cloud, const ScanSource& source);
+
+/// Gives the labels the values that they have in bags and PCD folders, whatever they are to
+/// `source`: static 0, moving 1. Ignored points keep theirs, but 2 where that would mean moving.
+void unifyLabels(pcl::PCLPointCloud2& cloud, const ScanSource& source);
 
 }  // namespace beautymap

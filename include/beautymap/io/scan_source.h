@@ -5,6 +5,7 @@
 #include <pcl/PCLPointCloud2.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -59,7 +60,13 @@ class ScanSource {
   const std::map<std::string, Skipped>& skipped() const { return skipped_; }
 
   /// Whether a value of the cloud's `label` field means a moving point.
-  virtual bool isMoving(std::uint32_t label) const { return label > 0; }
+  virtual bool isMoving(std::uint32_t label) const {
+    return moving_labels_.empty() ? label > 0 : has(moving_labels_, label);
+  }
+  /// Whether it means neither moving nor static, so that the point is not scored.
+  bool isIgnored(std::uint32_t label) const {
+    return label > 0 && !moving_labels_.empty() && !has(moving_labels_, label);
+  }
 
  protected:
   void skip(const std::string& reason, const std::string& example) {
@@ -68,6 +75,14 @@ class ScanSource {
   }
 
   std::map<std::string, Skipped> skipped_;
+  /// The only values that mean moving, where all others but 0 are to be ignored; empty: no value
+  /// is.
+  std::vector<std::uint32_t> moving_labels_;
+
+ private:
+  static bool has(const std::vector<std::uint32_t>& labels, std::uint32_t label) {
+    return std::find(labels.begin(), labels.end(), label) != labels.end();
+  }
 };
 
 struct SourceOptions {
@@ -78,6 +93,9 @@ struct SourceOptions {
   double start_s = 0.0;      ///< skip that much of the input's beginning [s]
   double duration_s = 0.0;   ///< use that much [s]; 0: all
   int stride = 1;            ///< use every n-th scan
+  /// Values of `label` in bags and PCD folders that mean moving; 0 means static, and points with
+  /// any other value are not scored.
+  std::vector<std::uint32_t> moving_labels{1};
 };
 
 /// Opens rosbags (one or several as one input), a PCD folder or a SemanticKITTI folder.
