@@ -88,12 +88,14 @@ class Reader {
   }
 
   template <typename T>
-  void operator()(const char* name, T& value, T min, T max, const char* unit, const char*) {
+  void operator()(const char* name, T& value, T min, T max, const char* unit, const char*,
+                  const char* = "") {
     names_.push_back(name);
     if (!node_.IsDefined() || !node_.IsMap() || !node_[name]) return;
     assign(group_ + "." + name, node_[name], value, min, max, unit);
   }
-  void operator()(const char* name, std::string& value, Choices choices, const char*) {
+  void operator()(const char* name, std::string& value, Choices choices, const char*,
+                  const char* = "") {
     names_.push_back(name);
     if (!node_.IsDefined() || !node_.IsMap() || !node_[name]) return;
     const std::string written =
@@ -148,11 +150,13 @@ class RangeChecker {
     group.describe(*this);
   }
   template <typename T>
-  void operator()(const char* name, T& value, T min, T max, const char* unit, const char*) {
+  void operator()(const char* name, T& value, T min, T max, const char* unit, const char*,
+                  const char* = "") {
     // Written so that NaN is refused.
     if (!(value >= min && value <= max)) refuse(group_ + "." + name, text(value), min, max, unit);
   }
-  void operator()(const char* name, const std::string& value, Choices choices, const char*) {
+  void operator()(const char* name, const std::string& value, Choices choices, const char*,
+                  const char* = "") {
     checkChoice(group_ + "." + name, value, choices);
   }
 
@@ -168,13 +172,15 @@ class Lister {
     group.describe(*this);
   }
   template <typename T>
-  void operator()(const char* name, T& value, T min, T max, const char* unit, const char* meaning) {
-    list.push_back({group_ + "." + name, text(value), unit, text(min), text(max), meaning, ""});
+  void operator()(const char* name, T& value, T min, T max, const char* unit, const char* meaning,
+                  const char* symptom = "") {
+    list.push_back(
+        {group_ + "." + name, text(value), unit, text(min), text(max), meaning, "", symptom});
   }
-  void operator()(const char* name, const std::string& value, Choices choices,
-                  const char* meaning) {
+  void operator()(const char* name, const std::string& value, Choices choices, const char* meaning,
+                  const char* symptom = "") {
     list.push_back({group_ + "." + name, value, "", *choices.begin(), *(choices.end() - 1), meaning,
-                    text(choices)});
+                    text(choices), symptom});
   }
 
   std::vector<ParameterInfo> list;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "beautymap/evidence/bit_counters.h"
 #include "beautymap/evidence/object_growth.h"
 #include "neighbourhood.h"
 
@@ -81,35 +80,13 @@ BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const Agreem
   return noise;
 }
 
-BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
-  BitGrid floors(window.occupied.window(), 0);
-  BitGrid surfaces = stayingCells(window, window.suspected);
-  for (int x = 0; x < floors.size(); ++x) {
-    for (int y = 0; y < floors.size(); ++y) {
-      Bits& cells = surfaces.at(x, y);
-      cells &= ~(cells >> 1) & ~lowBits(ground_bit + 1);
-    }
-  }
-  for (int x = 1; x + 1 < floors.size(); ++x) {
-    for (int y = 1; y + 1 < floors.size(); ++y) {
-      if (surfaces.at(x, y) == 0) continue;
-      BitCounters<4> columns;  // as high as each bit; the middle one is as high as its own
-      for (const Bits near : around(surfaces, x, y))
-        columns.increment(near | near << 1 | near >> 1);
-      floors.at(x, y) = surfaces.at(x, y) & columns.above(config.floor_neighbours);
-    }
-  }
-  return floors;
-}
-
 int agreementMargin(const AgreementConfig& config) {
   return 2 + 2 * config.join_rounds + kFlickerRounds;
 }
 
-BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config) {
+BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config) {
   BitGrid dynamic = window.suspected;
   excludeCells(dynamic, surfaceNoise(window, config.surface_bits));
-  excludeCells(window.occupied, floorCells(window, ground_bit, config));
   excludeCells(dynamic, unsupportedCells(window, ground_bit, config));
   excludeCells(dynamic, overheadNoise(window, ground_bit, config));
   growObjects(window, dynamic, ground_bit, config);

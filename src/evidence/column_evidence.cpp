@@ -79,7 +79,7 @@ bool ColumnEvidence::isDynamic(int bit, const EvidenceConfig& config) const {
   const bool hits_known = hit < decltype(hits_)::kMax;
   if (hits_known && free >= config.min_free && free > config.free_ratio * hit) return true;
   const auto decides = [&](int in_order) {
-    return in_order >= config.min_free_in_order && in_order > config.order_ratio * hit;
+    return in_order >= config.min_free && in_order > config.order_ratio * hit;
   };
   return (hits_known && decides(before)) || decides(after);
 }

@@ -16,6 +16,9 @@
 namespace beautymap {
 namespace {
 
+/// Free space that was seen in so many scans says that what lies above it is no ground.
+constexpr int kNoGroundFrees = 5;
+
 /// Whether any of these cells was seen free so often before its first hit, no more and no less.
 bool anySeenFree(const ColumnEvidence& evidence, Bits cells, int times) {
   for (; cells != 0; cells &= cells - 1) {
@@ -65,7 +68,7 @@ std::vector<ColumnIndex> EvidenceJudgement::observeCells(TileMap& map, const Col
     evidence.observe(seen.hit, seen.free, seen.few);
     // Free space far below a column's ground says that it is none.
     if (seen.free != 0 && tile.lowest[column] != Tile::kNoHeight &&
-        anySeenFree(evidence, seen.free & far_below, config_.evidence.min_free_in_order)) {
+        anySeenFree(evidence, seen.free & far_below, kNoGroundFrees)) {
       no_ground.push_back({window.corner.x + x, window.corner.y + y});
     }
     if ((observed & tile.occupied[column]) == 0) return;
@@ -184,8 +187,7 @@ bool EvidenceJudgement::hangsOverFreeSpace(const Tile& tile, std::size_t column)
   const ColumnEvidence& evidence = columns[column];
   Bits rest = evidence.everFree() & ~tile.occupied[column] & lowBits(below);
   for (; rest != 0; rest &= rest - 1) {
-    if (evidence.freeBefore(lowestBitIndex(rest)) >= config_.evidence.min_free_in_order)
-      return true;
+    if (evidence.freeBefore(lowestBitIndex(rest)) >= kNoGroundFrees) return true;
   }
   return false;
 }

@@ -218,7 +218,7 @@ bool PublishedJudgement::anchor(Tile& tile, std::size_t column, float bottom) co
   Bits& occupied = tile.occupied[column];
   const double up = static_cast<double>(tile.ground[column]) - bottom;
   const bool cells_known = tile.ground[column] != Tile::kNoHeight && (occupied | seen_free) != 0;
-  if (cells_known && std::abs(up) <= config_.online.ground_drift) return false;
+  if (cells_known && up == 0.0F) return false;
   tile.ground[column] = bottom;
   if (!cells_known) return false;
   // Exactly to the estimate, as a cell that holds the ground and 0.1 m of an object is all ground

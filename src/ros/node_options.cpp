@@ -126,11 +126,11 @@ class Lister {
  public:
   template <typename T>
   void operator()(const char* name, T& value, const char* meaning) {
-    list.push_back({name, text(value), "", "", "", meaning, ""});
+    list.push_back({name, text(value), "", "", "", meaning, "", ""});
   }
   template <typename T>
   void operator()(const char* name, T& value, T min, T max, const char* unit, const char* meaning) {
-    list.push_back({name, text(value), unit, text(min), text(max), meaning, ""});
+    list.push_back({name, text(value), unit, text(min), text(max), meaning, "", ""});
   }
   std::vector<ParameterInfo> list;
 };

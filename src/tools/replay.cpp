@@ -67,11 +67,15 @@ int main(int argc, char** argv) {
   app.add_option("--voxel", options.voxel_m,
                  "keep one point per cube of this side [m]; 0: all points as they came")
       ->check(CLI::Range(0.0, 100.0));
-  std::string footer = "Parameters for --set and YAML files (default, range):\n";
+  std::string users = "Parameters for --set and YAML files (default, range):\n";
+  std::string experts = "For experts:\n";
   for (const ParameterInfo& p : listParameters(Config())) {
-    footer += "  " + p.name + " = " + p.value + " (" + p.range() + "): " + p.meaning + "\n";
+    const std::string line =
+        "  " + p.name + " = " + p.value + " (" + p.range() + "): " + p.meaning + "\n";
+    (p.symptom.empty() ? experts : users) +=
+        p.symptom.empty() ? line : line + "      " + p.symptom + "\n";
   }
-  app.footer(footer);
+  app.footer(users + experts);
 
   return runTool(app, argc, argv, [&] {
     Config config = config_file.empty() ? Config() : loadConfig(config_file);

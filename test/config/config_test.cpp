@@ -223,10 +223,10 @@ TEST(Config, WhatIsWrittenIsReadAgain) {
 TEST(Config, WrittenNumbersLoseNoDigit) {
   Config config;
   config.matrix.res_g = 1.0 / 3.0;
-  config.restoration.steepest_share = 0.99999999999;
+  config.fine_ground.ground_ratio = 0.99999999999;
   const Config read = load(toYaml(config));
   EXPECT_EQ(read.matrix.res_g, config.matrix.res_g);
-  EXPECT_EQ(read.restoration.steepest_share, config.restoration.steepest_share);
+  EXPECT_EQ(read.fine_ground.ground_ratio, config.fine_ground.ground_ratio);
 }
 
 TEST(Config, ContradictionsAreRefused) {
@@ -295,13 +295,21 @@ TEST(Config, ThePaperFilesHaveThePublishedSettings) {
   EXPECT_EQ(indoor.matrix.roi_size, 10.0);
 }
 
+TEST(Config, ThereAreFewParametersAndFewerForUsers) {
+  const std::vector<ParameterInfo> parameters = listParameters(Config());
+  EXPECT_LE(parameters.size(), 40U);
+  EXPECT_LE(std::count_if(parameters.begin(), parameters.end(),
+                          [](const ParameterInfo& p) { return !p.symptom.empty(); }),
+            10);
+}
+
 TEST(Config, TheReadmeListsEveryParameterWithDefaultRangeAndMeaning) {
   std::ifstream stream(fs::path(BEAUTYMAP_SOURCE_DIR) / "README.md");
   const std::string readme((std::istreambuf_iterator<char>(stream)),
                            std::istreambuf_iterator<char>());
   for (const ParameterInfo& p : listParameters(Config())) {
-    const std::string row =
-        "| `" + p.name + "` | " + p.value + " | " + p.range() + " | " + p.meaning + " |";
+    const std::string row = "| `" + p.name + "` | " + p.value + " | " + p.range() + " | " +
+                            p.meaning + (p.symptom.empty() ? " |" : " | " + p.symptom + " |");
     EXPECT_TRUE(contains(readme, row)) << "README.md lacks: " << row;
   }
 }

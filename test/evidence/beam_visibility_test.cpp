@@ -300,9 +300,9 @@ TEST(CellsSeenFree, AStatedRotationErrorGrowsWithTheRange) {
     return view.seesFree(x, 0, 0.0);
   };
   EXPECT_TRUE(sees(10, 0.0));
-  EXPECT_TRUE(sees(10, 0.5));  // 4 cm
+  EXPECT_TRUE(sees(10, 0.25));  // 2 cm
   EXPECT_TRUE(sees(80, 0.0));
-  EXPECT_FALSE(sees(80, 0.5));  // 35 cm
+  EXPECT_FALSE(sees(80, 0.25));  // 17 cm
 }
 
 TEST(CellsSeenFree, AStatedPoseErrorOnlyTakesCellsAway) {

@@ -423,8 +423,8 @@ TEST(EvidenceRules, SingleBeamsCountHalfWhereACellWasSeldomHit) {
   EXPECT_FALSE(isDynamic({{kHit, 1}, {kFewBeams, 3}}));
   EXPECT_TRUE(isDynamic({{kHit, 1}, {kFewBeams, 4}}));
   EXPECT_TRUE(isDynamic({{kFewBeams, 2}, {kHit, 1}, {kFree, 1}}));
-  EXPECT_FALSE(isDynamic({{kHit, 2}, {kFewBeams, 4}}));
-  EXPECT_TRUE(isDynamic({{kHit, 2}, {kFewBeams, 5}}));
+  EXPECT_FALSE(isDynamic({{kHit, 2}, {kFewBeams, 3}}));
+  EXPECT_TRUE(isDynamic({{kHit, 2}, {kFewBeams, 4}}));
   EXPECT_FALSE(isDynamic({{kHit, 3}, {kFewBeams, 100}}));
   EvidenceConfig never;
   never.few_beams_hits = 0;
@@ -518,7 +518,6 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
     EvidenceConfig config;
     config.min_free = random.integer(1, 20);
     config.free_ratio = random.uniform(0.0, 2.0);
-    config.min_free_in_order = random.integer(1, 20);
     config.order_ratio = random.uniform(0.0, 1.0);
     config.strong_ratio = random.uniform(0.0, 4.0);
     config.leaning_ratio = random.uniform(0.0, 0.5);
@@ -536,7 +535,7 @@ TEST(EvidenceRules, AgreeWithTheRulesOnPlainCountsAtRandom) {
       const bool by_ratio =
           c.hits < kMaxHits && free >= config.min_free && free > config.free_ratio * c.hits;
       const auto decides = [&](int ordered) {
-        return ordered >= config.min_free_in_order && ordered > config.order_ratio * c.hits;
+        return ordered >= config.min_free && ordered > config.order_ratio * c.hits;
       };
       // What was free before more hits than can be counted has become static.
       const bool by_order = (c.hits < kMaxHits && decides(c.before)) || decides(c.after);

@@ -83,7 +83,7 @@ TEST(EvidenceAnchor, WhatIsAboveFreeSpaceIsNoGround) {
   tile.ground[7] = 10.0F;
   EXPECT_FALSE(hangs(13.1F)) << "nothing was seen";
   tile.occupied[7] = Bits{1} << 15;
-  for (int scan = 0; scan < config.evidence.min_free_in_order; ++scan) {
+  for (int scan = 0; scan < 5; ++scan) {
     EXPECT_FALSE(hangs(13.1F)) << "seen free too seldom";
     evidenceTile(tile).evidence.touch(7).observe(tile.occupied[7], Bits{1} << 12);
   }

@@ -128,8 +128,10 @@ TEST(OnlineCleaner, TilesOutsideTheRadiusComeBackFromDiskAsTheyWere) {
       bounded.finish(there_and_back[i]);
       EXPECT_TRUE(i != 10 || bounded.size().tiles_on_disk > 5U);
       EXPECT_EQ(bounded.size().points, unbounded.size().points);
+      // Who looks at a map has it judged; so does who puts tiles on disk, and what is judged a
+      // scan earlier may be judged a little differently.
+      EXPECT_EQ(saved(bounded), saved(unbounded)) << "scan " << i;
     }
-    EXPECT_EQ(saved(bounded), saved(unbounded));
     EXPECT_GT(bounded.size().tiles_on_disk, 0U);
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "tiles")) << "the cleaner tidies up";

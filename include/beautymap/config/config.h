@@ -21,8 +21,9 @@ class ConfigError : public std::invalid_argument {
 };
 
 // Each struct belongs to one stage, and stands in the header of its room. describe() declares each
-// parameter once: name, value, smallest, largest (or the choices), unit, meaning. The default
-// stands at the member.
+// parameter once: name, value, smallest, largest (or the choices), unit, meaning, and for the few
+// that users turn the symptom. The default stands at the member. Members that describe() leaves out
+// are constants.
 
 /// Which judgement says what is removed: one line for each in cleaner/make_judgement.cpp.
 struct JudgementConfig {
@@ -32,7 +33,8 @@ struct JudgementConfig {
   void describe(Visitor& v) {
     v("method", method, {"evidence", "published"},
       "evidence: count over all scans how often each cell was hit and seen free; published: what "
-      "one scan finds dynamic is removed");
+      "one scan finds dynamic is removed",
+      "to compare with the paper: published");
   }
 };
 
@@ -77,6 +79,7 @@ struct ParameterInfo {
   std::string max;
   std::string meaning;
   std::string choices;  ///< empty for numbers
+  std::string symptom;  ///< when to change it which way; empty for experts' parameters
 
   /// "MIN to MAX UNIT", or the choices.
   std::string range() const {

@@ -8,7 +8,9 @@ struct RestorationConfig {
   bool enabled = true;
   double blind_radius = 2.0;
   double sight_range = 15.0;
-  double steepest_share = 0.999;
+
+  // Not parameters: one steep outlier must not open the sky.
+  double steepest_share = 0.999;  ///< this quantile of the points' slopes is the steepest view
 
   template <typename Visitor>
   void describe(Visitor& v) {
@@ -18,8 +20,6 @@ struct RestorationConfig {
       "columns nearer to the sensor are never judged");
     v("sight_range", sight_range, 0.0, 400.0, "m",
       "a column beyond it is judged only where the scan saw its ground");
-    v("steepest_share", steepest_share, 0.5, 1.0, "",
-      "this quantile of the points' slopes is the steepest view; 1: the maximum");
   }
 };
 

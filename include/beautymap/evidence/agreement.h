@@ -29,19 +29,12 @@ BitGrid surfaceNoise(const EvidenceWindow& window, int surface_bits);
 /// @return  for the columns one in from the window's border; no bits at the border
 BitGrid overheadNoise(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 
-/// The cells that are a floor above the ground cell: nothing is on them that stays, and
-/// floor_neighbours of the 8 columns around have such a surface within a bit of their height. As
-/// the ground below does, a floor (a deck, a step, a storey's) says nothing about what stands on
-/// it.
-/// @return  for the columns one in from the window's border; no bits at the border
-BitGrid floorCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
-
 /// How far from its border a window is needed to know the dynamic cells within [columns].
 int agreementMargin(const AgreementConfig& config);
 
 /// The dynamic cells: the suspected ones with support that are no noise, and what joins them round
-/// by round, without flickering edges. Floors count as little as the ground does.
+/// by round, without flickering edges.
 /// @return  valid for the columns agreementMargin() in from the window's border
-BitGrid dynamicCells(EvidenceWindow window, int ground_bit, const AgreementConfig& config);
+BitGrid dynamicCells(const EvidenceWindow& window, int ground_bit, const AgreementConfig& config);
 
 }  // namespace beautymap
