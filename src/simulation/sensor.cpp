@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/simulation/sensor.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -52,6 +53,50 @@ SensorModel mid360() {
   sensor.handheld_pitch_rad = 15.0 * kDegree;
   sensor.has_ring = false;
   sensor.samples = 20000;
+  sensor.lowest_rad = -7.0 * kDegree;
+  sensor.highest_rad = 52.0 * kDegree;
+  return sensor;
+}
+
+/// Avia's window of 70.4 x 77.2 degrees, from a mast or a drone straight down on the road.
+SensorModel cone() {
+  SensorModel sensor;
+  sensor.name = "cone";
+  sensor.min_range_m = 1.0;
+  sensor.max_range_m = 120.0;
+  sensor.range_sigma_m = 0.02;
+  sensor.range_at_10pct_m = 100.0;
+  sensor.mount_height_m = 25.0;
+  sensor.mount_pitch_rad = 90.0 * kDegree;
+  sensor.has_ring = false;
+  sensor.samples = 24000;
+  sensor.first_azimuth_rad = -35.2 * kDegree;
+  sensor.azimuth_width_rad = 70.4 * kDegree;
+  sensor.lowest_rad = -38.6 * kDegree;
+  sensor.highest_rad = 38.6 * kDegree;
+  return sensor;
+}
+
+/// Half of the sphere, to the front.
+SensorModel dome() {
+  SensorModel sensor;
+  sensor.name = "dome";
+  sensor.min_range_m = 0.5;
+  sensor.max_range_m = 45.0;
+  sensor.range_sigma_m = 0.03;
+  sensor.range_at_10pct_m = 20.0;
+  sensor.mount_height_m = 1.0;
+  sensor.mount_pitch_rad = 90.0 * kDegree;
+  sensor.azimuth_steps = 1024;
+  for (int i = 0; i < 64; ++i) sensor.ring_elevation_rad.push_back(88.0 / 63.0 * i * kDegree);
+  return sensor;
+}
+
+/// VLP-16 that lies on its side and scans from below over the front to above.
+SensorModel vlp16Vertical() {
+  SensorModel sensor = vlp16();
+  sensor.name = "vlp16_vertical";
+  sensor.mount_roll_rad = 90.0 * kDegree;
   return sensor;
 }
 
@@ -84,8 +129,6 @@ std::vector<Beam> spinningBeams(const SensorModel& sensor, std::uint64_t seed, i
 std::vector<Beam> rosetteBeams(const SensorModel& sensor, std::uint64_t seed, int scan) {
   constexpr double kStep1 = 0.7548776662466927;
   constexpr double kStep2 = 0.5698402909980532;
-  constexpr double kLowest = -7.0 * kDegree;
-  constexpr double kHighest = 52.0 * kDegree;
   const double start1 = unitFromBits(hashOf(seed, 0xa21));
   const double start2 = unitFromBits(hashOf(seed, 0xa22));
   std::vector<Beam> beams(static_cast<std::size_t>(sensor.samples));
@@ -94,23 +137,34 @@ std::vector<Beam> rosetteBeams(const SensorModel& sensor, std::uint64_t seed, in
     const double u = start1 + n * kStep1;
     const double v = start2 + n * kStep2;
     Beam& beam = beams[static_cast<std::size_t>(i)];
-    beam.direction = directionOf(2.0 * M_PI * (u - std::floor(u)),
-                                 kLowest + (kHighest - kLowest) * (v - std::floor(v)));
+    beam.direction = directionOf(
+        sensor.first_azimuth_rad + sensor.azimuth_width_rad * (u - std::floor(u)),
+        sensor.lowest_rad + (sensor.highest_rad - sensor.lowest_rad) * (v - std::floor(v)));
     beam.time_s = static_cast<float>(kScanPeriod_s * i / sensor.samples);
   }
   return beams;
 }
 
+constexpr std::array<SensorModel (*)(), 6> kSensors{hdl64, vlp16, mid360,
+                                                    cone,  dome,  vlp16Vertical};
+
 }  // namespace
 
 SensorModel makeSensor(const std::string& name) {
-  if (name == "hdl64") return hdl64();
-  if (name == "vlp16") return vlp16();
-  if (name == "mid360") return mid360();
-  throw std::invalid_argument("sensor: '" + name + "' is not one of hdl64, vlp16, mid360");
+  std::string names;
+  for (const auto make : kSensors) {
+    SensorModel sensor = make();
+    if (sensor.name == name) return sensor;
+    names += (names.empty() ? "" : ", ") + sensor.name;
+  }
+  throw std::invalid_argument("sensor: '" + name + "' is not one of " + names);
 }
 
-std::vector<std::string> sensorNames() { return {"hdl64", "vlp16", "mid360"}; }
+std::vector<std::string> sensorNames() {
+  std::vector<std::string> names;
+  for (const auto make : kSensors) names.push_back(make().name);
+  return names;
+}
 
 std::vector<Beam> beamsOfScan(const SensorModel& sensor, std::uint64_t seed, int scan) {
   return sensor.samples > 0 ? rosetteBeams(sensor, seed, scan) : spinningBeams(sensor, seed, scan);

@@ -156,7 +156,8 @@ Isometry3d SimulatedSource::sensorInScene(int scan) const {
   }
   Isometry3d mount = shake(scene_.carrier, time_s);
   mount.translation().z() += height;
-  return pose * mount * AngleAxisd(pitch, Vector3d::UnitY());
+  return pose * mount * AngleAxisd(pitch + sensor_.mount_pitch_rad, Vector3d::UnitY()) *
+         AngleAxisd(sensor_.mount_roll_rad, Vector3d::UnitX());
 }
 
 void SimulatedSource::placeActors(int scan) {
