@@ -46,7 +46,7 @@ void DirectionBlock::find(const float* x, const float* y, const float* z, std::s
     slope[i] = distance[i] < BeamImage::kNearest ? -1.0F : pixel;
   }
   for (std::size_t i = 0; i < size; ++i) {
-    ends[i] = BeamImage::limitFor(distance[i]) & ~BeamImage::kMaxCount;
+    ends[i] = BeamImage::endAt(distance[i]);
     // The order of the arguments makes NaN the lower limit.
     azimuths[i] = static_cast<std::int32_t>(std::max(0.0F, std::min(azimuth[i], last_azimuth)));
     const int pixel =
@@ -64,7 +64,8 @@ void DirectionBlock::find(const float* x, const float* y, const float* z, std::s
 }  // namespace
 
 BeamImage::BeamImage(const VisibilityConfig& config)
-    : azimuth_pixels_(static_cast<int>(std::ceil(360.0 / config.pixel_deg))) {
+    : azimuth_pixels_(static_cast<int>(std::ceil(360.0 / config.pixel_deg))),
+      caps_{PolarCap(PolarCap::Side::kBelow, config), PolarCap(PolarCap::Side::kAbove, config)} {
   // Four pixels of azimuth are as many as the diamond angle's range, so that all quadrants are
   // alike.
   azimuth_pixels_ = (azimuth_pixels_ + 3) / 4 * 4;
@@ -98,14 +99,24 @@ void BeamImage::fill(const PlacedScan& scan) {
   const auto azimuths = static_cast<std::size_t>(azimuth_pixels_);
   pixels_.assign(azimuths * slopes + kPadding, kEmpty);
   farthest_.assign(azimuths, 0);
+  bool any_outside = false;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (slopes_[i] == kOutside) continue;
+    if (slopes_[i] == kOutside) {
+      any_outside = true;
+      continue;
+    }
     const auto u = static_cast<std::size_t>(azimuths_[i]);
     const auto v = static_cast<std::size_t>(slopes_[i] - first_slope_);
-    Pixel& pixel = pixels_[u * slopes + v];
-    pixel = std::min(pixel & ~kMaxCount, ends_[i]) | std::min(countOf(pixel) + 1, kMaxCount);
+    addBeam(pixels_[u * slopes + v], ends_[i]);
     Pixel& farthest = farthest_[u];
     farthest = std::max(farthest, ends_[i] | 1);
+  }
+  for (PolarCap& cap : caps_) {
+    if (any_outside) {
+      cap.fill(scan);
+    } else {
+      cap.clear();
+    }
   }
 }
 

@@ -9,19 +9,10 @@
 #include <utility>
 
 #include "../base/vector_clones.h"
+#include "pixel_lanes.h"
 
 namespace beautymap {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
-
-/// How far a point that a scan measured at a range may be from where it was [m]: one standard
-/// deviation of the scan's pose.
-float poseError(float range, const VisibilityConfig& config) {
-  const auto position = static_cast<float>(config.pose_position);
-  const auto turned = range * static_cast<float>(config.pose_rotation * kRadPerDeg);
-  return std::sqrt(position * position + turned * turned);
-}
 
 /// Where one column of the map stands in the beam image.
 struct ColumnView {
@@ -141,11 +132,6 @@ Bits inImage(Bits candidates, const BeamImage& beams, const ColumnView& view) {
   return candidates & lowBits(last) & ~lowBits(first);
 }
 
-/// So many pixels are summed at once.
-constexpr std::size_t kLanes = 8;
-using Lanes = BeamImage::Pixel __attribute__((vector_size(kLanes * sizeof(BeamImage::Pixel))));
-static_assert(kLanes <= BeamImage::kPadding, "reads that far beyond a row");
-
 /// The sums over rows of pixels: of all beams, and of those that passed.
 /// @param all, passed  have room for kLanes more
 BEAUTYMAP_VECTOR_CLONES
@@ -158,7 +144,7 @@ void sumRows(const std::vector<const BeamImage::Pixel*>& rows, std::size_t size,
       std::memcpy(&lanes, row + v, sizeof(lanes));
       const Lanes counts = lanes & BeamImage::kMaxCount;
       all_lanes += counts;
-      passed_lanes += counts & (lanes > behind);  // a true lane has all bits set
+      passed_lanes += counts & (lanes > behind);
     }
     std::memcpy(all + v, &all_lanes, sizeof(all_lanes));
     std::memcpy(passed + v, &passed_lanes, sizeof(passed_lanes));
@@ -191,8 +177,6 @@ class BeamSums {
     }
   }
 
-  enum class Seen { kNot, kByFewBeams, kFree };
-
   Seen see(int first_slope, int last_slope, const VisibilityConfig& config) const {
     const int begin = std::max(first_slope, first_slope_) - first_slope_;
     const int end = std::min(last_slope, last_slope_) - first_slope_ + 1;
@@ -200,8 +184,7 @@ class BeamSums {
     const auto from = static_cast<std::size_t>(begin), to = static_cast<std::size_t>(end);
     const int all = all_up_to_[to] - all_up_to_[from];
     const int passed = passed_up_to_[to] - passed_up_to_[from];
-    if (passed == 0 || passed < config.min_share * all) return Seen::kNot;
-    return passed < config.min_beams ? Seen::kByFewBeams : Seen::kFree;
+    return seenBy(passed, all, config);
   }
 
  private:
@@ -230,9 +213,9 @@ Bits seenFree(Bits candidates, const BeamImage& beams, const ColumnView& view,
   Bits free = 0;
   for (Bits rest = candidates; rest != 0; rest &= rest - 1) {
     const int bit = lowestBitIndex(rest);
-    const BeamSums::Seen seen = sums.see(view.firstSlope(bit), view.lastSlope(bit), config);
-    if (seen == BeamSums::Seen::kFree) free |= lowestBit(rest);
-    if (seen == BeamSums::Seen::kByFewBeams) few |= lowestBit(rest);
+    const Seen seen = sums.see(view.firstSlope(bit), view.lastSlope(bit), config);
+    if (seen == Seen::kFree) free |= lowestBit(rest);
+    if (seen == Seen::kByFewBeams) few |= lowestBit(rest);
   }
   return free;
 }
@@ -250,7 +233,7 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
   seen_free.reset(window, 0);
   if (few != nullptr) few->reset(window, 0);
   const float margin = 0.5F * res_g + static_cast<float>(config.margin);
-  const bool pose_is_unsure = config.pose_position > 0.0 || config.pose_rotation > 0.0;
+  const bool pose_is_unsure = isPoseUnsure(config);
   ColumnViews views;
   BeamSums sums;
   const auto from_sensor = [&](int column, float sensor) {
@@ -286,6 +269,9 @@ BitGrid cellsSeenFree(const BeamImage& beams, const BitGrid& candidates, const H
       if (views.full()) judge(x);
     }
     judge(x);
+  }
+  for (const PolarCap& cap : beams.caps()) {
+    if (!cap.empty()) cap.addSeenFree(candidates, ground, scan, matrix, config, seen_free, few);
   }
   return seen_free;
 }

@@ -162,6 +162,7 @@ SensorModel makeSensor(const std::string& name) {
 
 std::vector<std::string> sensorNames() {
   std::vector<std::string> names;
+  names.reserve(kSensors.size());
   for (const auto make : kSensors) names.push_back(make().name);
   return names;
 }

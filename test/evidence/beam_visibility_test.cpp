@@ -358,6 +358,13 @@ struct Geometry {
     return quarters * azimuths / 4.0;
   }
   double slope(double value) const { return (value + 1.5) / slope_size; }
+  /// Of a position on a plane one metre above or below the sensor.
+  double tangent(double value) const { return (value + 1.0) / slope_size; }
+  bool inBand(const Eigen::Vector3d& ray) const {
+    const double length = std::hypot(ray.x(), ray.y());
+    const double pixel = std::floor(slope(ray.z() / length));
+    return length >= 0.5 && pixel >= 0.0 && pixel < slopes;
+  }
 
   int azimuths;
   double slope_size;
@@ -406,8 +413,8 @@ struct Case {
       const double turn = random.uniform(0.0, 1.0);
       double distance = sectors[static_cast<std::size_t>(turn * 12.0)] + random.uniform(0.0, 1.0);
       if (random.chance(0.05)) distance = random.uniform(0.1, 30.0);
-      const double slope =
-          random.chance(0.05) ? random.uniform(-3.0, 3.0) : random.uniform(-0.5, 0.5);
+      const double steepest = random.chance(0.4) ? 8.0 : 0.5;
+      const double slope = random.uniform(-steepest, steepest);
       const Eigen::Vector3d ray(dyadic(distance * std::cos(2.0 * kPi * turn)),
                                 dyadic(distance * std::sin(2.0 * kPi * turn)),
                                 dyadic(distance * slope));
@@ -416,7 +423,12 @@ struct Case {
       if (std::abs(length - 0.5) < kRounding) continue;
       if (nearInteger(geometry.azimuth(ray.x(), ray.y()))) continue;
       if (nearInteger(geometry.slope(ray.z() / length))) continue;
+      const double height = std::abs(ray.z());
+      if (std::abs(height - std::max(std::abs(ray.x()), std::abs(ray.y()))) < kRounding) continue;
+      if (nearInteger(geometry.tangent(ray.x() / height))) continue;
+      if (nearInteger(geometry.tangent(ray.y() / height))) continue;
       points.push_back(sensor + ray);
+      if (!geometry.inBand(ray)) any_too_steep = true;
     }
   }
 
@@ -425,6 +437,7 @@ struct Case {
   ColumnIndex anchor;
   Eigen::Vector3d sensor;
   std::vector<Eigen::Vector3d> points;
+  bool any_too_steep = false;
   BitGrid candidates;
   HeightGrid ground;
 };
@@ -447,13 +460,46 @@ Footprint footprintOf(const Case& c, const Geometry& geometry, const Eigen::Vect
   return f;
 }
 
-/// Whether a cell is seen free; nothing where float may round a footprint's border into another
-/// pixel, or a distance to the other side of a limit.
-std::optional<bool> seenFree(const Case& c, int x, int y, int bit) {
-  const Geometry geometry(c.config);
+/// The pixels that beams of a footprint ended in.
+class Pixels {
+ public:
+  void add(int u, int v, double distance) {
+    Pixel& pixel = pixels_[{u, v}];
+    ++pixel.beams;
+    pixel.nearest = std::min(pixel.nearest, distance);
+  }
+  /// Nothing where float may round a distance to the other side of the limit.
+  std::optional<bool> seeFree(double behind, const VisibilityConfig& config) const {
+    int passed = 0, all = 0;
+    for (const auto& [position, pixel] : pixels_) {
+      // Distances are whole millimetres.
+      if (std::abs(pixel.nearest - behind) < 0.001 + kRounding) return std::nullopt;
+      all += pixel.beams;
+      if (pixel.nearest > behind) passed += pixel.beams;
+    }
+    return passed >= config.min_beams && passed >= config.min_share * all;
+  }
+
+ private:
+  struct Pixel {
+    int beams = 0;
+    double nearest = 1e9;
+  };
+  std::map<std::pair<int, int>, Pixel> pixels_;
+};
+
+/// From the sensor to the centre of a column.
+Eigen::Vector2d centreOf(const Case& c, int x, int y) {
   const ColumnIndex corner = c.candidates.window().corner;
-  const Eigen::Vector2d centre((corner.x - c.anchor.x + x + 0.5) * c.matrix.res_g - c.sensor.x(),
-                               (corner.y - c.anchor.y + y + 0.5) * c.matrix.res_g - c.sensor.y());
+  return {(corner.x - c.anchor.x + x + 0.5) * c.matrix.res_g - c.sensor.x(),
+          (corner.y - c.anchor.y + y + 0.5) * c.matrix.res_g - c.sensor.y()};
+}
+
+/// Whether the beams between the slopes of the image see a cell free; nothing where float may round
+/// a footprint's border into another pixel, or a distance to the other side of a limit.
+std::optional<bool> seenFreeInBand(const Case& c, int x, int y, int bit) {
+  const Geometry geometry(c.config);
+  const Eigen::Vector2d centre = centreOf(c, x, y);
   const double distance = centre.norm();
   // So near that the column fills much of the view.
   const double nearest = std::max(0.5 + c.matrix.res_g, c.config.blind_radius);
@@ -469,11 +515,7 @@ std::optional<bool> seenFree(const Case& c, int x, int y, int bit) {
   }
   if (f.slope_low < 0.0 || f.slope_high >= geometry.slopes) return false;
 
-  struct Pixel {
-    int beams = 0;
-    double nearest = 1e9;
-  };
-  std::map<std::pair<int, int>, Pixel> pixels;
+  Pixels pixels;
   for (const Eigen::Vector3d& point : c.points) {
     const Eigen::Vector3d ray = point - c.sensor;
     const double length = std::hypot(ray.x(), ray.y());
@@ -483,24 +525,57 @@ std::optional<bool> seenFree(const Case& c, int x, int y, int bit) {
     const int u = static_cast<int>(std::floor(geometry.azimuth(ray.x(), ray.y())));
     for (const int turned : {u, u + geometry.azimuths}) {
       if (turned < std::floor(f.azimuth_low) || turned > std::floor(f.azimuth_high)) continue;
-      Pixel& pixel = pixels[{u, v}];
-      ++pixel.beams;
-      pixel.nearest = std::min(pixel.nearest, length);
+      pixels.add(u, v, length);
     }
   }
-  const double behind = distance + 0.5 * c.matrix.res_g + c.config.margin;
-  int passed = 0, all = 0;
-  for (const auto& [position, pixel] : pixels) {
-    // Distances are whole millimetres.
-    if (std::abs(pixel.nearest - behind) < 0.001 + kRounding) return std::nullopt;
-    all += pixel.beams;
-    if (pixel.nearest > behind) passed += pixel.beams;
+  return pixels.seeFree(distance + 0.5 * c.matrix.res_g + c.config.margin, c.config);
+}
+
+/// The same for the beams above (side 1) or below (side -1), if any beam is too steep for the
+/// image.
+std::optional<bool> seenFreeInCap(const Case& c, int x, int y, int bit, double side) {
+  const Geometry geometry(c.config);
+  if (!c.any_too_steep) return false;
+  const Eigen::Vector2d centre = centreOf(c, x, y);
+  const double bottom =
+      static_cast<double>(c.ground.at(x, y)) + bit * c.matrix.res_h - c.sensor.z();
+  const double top = bottom + c.matrix.res_h;
+  const double near = std::min(side * bottom, side * top);
+  const double far = near + c.matrix.res_h;
+  // The rectangle around the corners.
+  Eigen::Array2d lowest(1e9, 1e9), highest(-1e9, -1e9);
+  for (const double face : {near, far}) {
+    for (const double half : {-0.5 * c.matrix.res_g, 0.5 * c.matrix.res_g}) {
+      lowest = lowest.min((centre.array() + half) / face);
+      highest = highest.max((centre.array() + half) / face);
+    }
   }
-  return passed >= c.config.min_beams && passed >= c.config.min_share * all;
+  const double nearest = std::max(0.5, c.config.blind_radius);
+  const double aside = centre.cwiseAbs().maxCoeff() + 0.5 * c.matrix.res_g;
+  if (std::abs(near - std::max(nearest, aside)) < kRounding) return std::nullopt;
+  if (std::abs(centre.norm() - c.config.max_range) < kRounding) return std::nullopt;
+  if (near < nearest || near < aside || centre.norm() > c.config.max_range) return false;
+  for (const double border : {lowest.x(), lowest.y(), highest.x(), highest.y()}) {
+    if (nearInteger(geometry.tangent(border))) return std::nullopt;
+  }
+  const auto pixel = [&](double tangent) {
+    return static_cast<int>(std::floor(geometry.tangent(tangent)));
+  };
+  Pixels pixels;
+  for (const Eigen::Vector3d& point : c.points) {
+    const Eigen::Vector3d ray = point - c.sensor;
+    const double height = side * ray.z();
+    if (std::max(std::abs(ray.x()), std::abs(ray.y())) > height) continue;
+    const int u = pixel(ray.x() / height), v = pixel(ray.y() / height);
+    if (u < pixel(lowest.x()) || u > pixel(highest.x())) continue;
+    if (v < pixel(lowest.y()) || v > pixel(highest.y())) continue;
+    pixels.add(u, v, height);
+  }
+  return pixels.seeFree(far + c.config.margin, c.config);
 }
 
 TEST(CellsSeenFree, AgreesWithALoopOverAllPoints) {
-  int free = 0, not_free = 0, undecided = 0;
+  int free = 0, not_free = 0, undecided = 0, steeply = 0;
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     const Case c(seed);
     const PlacedScan scan = test::placedScan(c.anchor, c.sensor, c.points);
@@ -513,20 +588,25 @@ TEST(CellsSeenFree, AgreesWithALoopOverAllPoints) {
         ASSERT_EQ(result.at(x, y) & ~c.candidates.at(x, y), Bits{0});
         for (int bit = 0; bit < kMaxBits; ++bit) {
           if ((c.candidates.at(x, y) >> bit & 1) == 0) continue;
-          const std::optional<bool> expected = seenFree(c, x, y, bit);
-          if (!expected) {
+          const std::optional<bool> between = seenFreeInBand(c, x, y, bit);
+          const std::optional<bool> below = seenFreeInCap(c, x, y, bit, -1.0);
+          const std::optional<bool> above = seenFreeInCap(c, x, y, bit, 1.0);
+          if (!between || !below || !above) {
             ++undecided;
             continue;
           }
-          ASSERT_EQ((result.at(x, y) >> bit & 1) != 0, *expected)
+          const bool expected = *between || *below || *above;
+          ASSERT_EQ((result.at(x, y) >> bit & 1) != 0, expected)
               << "seed " << seed << " column " << x << ", " << y << " bit " << bit;
-          ++(*expected ? free : not_free);
+          ++(expected ? free : not_free);
+          steeply += !*between && expected ? 1 : 0;
         }
       }
     }
   }
   EXPECT_GT(free, 2000);
   EXPECT_GT(not_free, 2000);
+  EXPECT_GT(steeply, 200);
   EXPECT_LT(undecided, (free + not_free) / 100);
 }
 

@@ -50,10 +50,11 @@ void count(const LabelledScan& scan, const std::vector<PointClass>& classes, Sco
   }
 }
 
-void expectScoresOfAReplay(const std::string& scene, const std::string& sensor) {
+/// @return  those of the replay
+Score expectScoresOfAReplay(const std::string& scene, const std::string& sensor) {
   SCOPED_TRACE(scene + " " + sensor);
   const std::vector<LabelledScan> scans = simulate(scene, sensor);
-  ASSERT_EQ(scans.size(), 60U);
+  EXPECT_EQ(scans.size(), 60U);
   OnlineMap map{Config()};
   MapCleaner cleaner{Config()};
   for (const LabelledScan& scan : scans) {
@@ -72,6 +73,7 @@ void expectScoresOfAReplay(const std::string& scene, const std::string& sensor) 
   EXPECT_GT(replay.dynamic_points, 1000U);
   EXPECT_GT(replay.HA(), 90.0);
   EXPECT_GT(online.HA(), replay.HA() - 0.5);
+  return replay;
 }
 
 TEST(OnlineScores, PeopleCloseToASensorThatSeesNoGroundBesideIt) {
@@ -79,6 +81,12 @@ TEST(OnlineScores, PeopleCloseToASensorThatSeesNoGroundBesideIt) {
 }
 
 TEST(OnlineScores, ACrowdAroundASensorThatLooksUp) { expectScoresOfAReplay("crowd", "mid360"); }
+
+TEST(OnlineScores, TrafficStraightBelowTheSensor) {
+  const Score score = expectScoresOfAReplay("slope", "cone");
+  EXPECT_GT(score.SA(), 99.5);
+  EXPECT_GT(score.DA(), 98.5);
+}
 
 TEST(OnlineScores, Traffic) { expectScoresOfAReplay("street", "vlp16"); }
 

@@ -13,7 +13,7 @@ struct VisibilityConfig {
   double pose_rotation = 0.0;
 
   // Not parameters: what a footprint and a point of the beam image cannot tell.
-  double blind_radius = 0.5;  ///< [m] columns nearer to the sensor are not judged
+  double blind_radius = 0.5;  ///< [m] cells nearer to the sensor are not judged
   double margin = 0.05;       ///< [m] a beam passed when it ended that far behind the cell
 
   template <typename Visitor>

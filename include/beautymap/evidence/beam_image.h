@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "beautymap/config/evidence_config.h"
+#include "beautymap/evidence/beam_pixels.h"
+#include "beautymap/evidence/polar_cap.h"
 #include "beautymap/matrix/scan.h"
 
 namespace beautymap {
@@ -39,25 +41,11 @@ struct PixelScale {
 
 /// The beams of one scan by direction: how many returned from each pixel of azimuth and slope
 /// (height over horizontal distance), and the nearest return. Made from the points alone;
-/// directions without a return are unknown.
-class BeamImage {
+/// directions without a return are unknown. Steeper beams are in two caps.
+class BeamImage : public BeamPixels {
  public:
-  /// One pixel in one word, so that a point touches one cache line: the nearest horizontal distance
-  /// at which a beam ended [mm] above its lowest byte, which counts the beams up to 255.
-  using Pixel = std::int32_t;
-  static constexpr int kCountBits = 8;
-  static constexpr Pixel kMaxCount = (1 << kCountBits) - 1;
-  static Pixel countOf(Pixel pixel) { return pixel & kMaxCount; }
-  /// A pixel is greater than this if all its beams ended farther away.
-  static Pixel limitFor(float distance_m) {
-    return static_cast<Pixel>(std::min(distance_m, kFarthest) * 1000.0F) << kCountBits | kMaxCount;
-  }
-
   /// In place of a slope's pixel: a beam too near or too steep for the image.
   static constexpr std::int32_t kOutside = -1;
-
-  /// Nearer columns and points [m] span so much of the view that the image says little about them.
-  static constexpr float kNearest = 0.5F;
 
   explicit BeamImage(const VisibilityConfig& config);
 
@@ -76,14 +64,13 @@ class BeamImage {
   const Pixel* row(int azimuth) const {
     return pixels_.data() + static_cast<std::ptrdiff_t>(azimuth) * (last_slope_ - first_slope_ + 1);
   }
-  static constexpr std::size_t kPadding = 8;
   /// The farthest beam of one azimuth, as a pixel.
   Pixel farthest(int azimuth) const { return farthest_[static_cast<std::size_t>(azimuth)]; }
 
- private:
-  static constexpr float kFarthest = 8000.0F;  // [m]
-  static constexpr Pixel kEmpty = 0x7FFFFF00;  // farther than any beam, and none
+  /// The beams below and above; empty where none is too steep for the image.
+  const std::array<PolarCap, 2>& caps() const { return caps_; }
 
+ private:
   int azimuth_pixels_;
   int slope_pixels_;
   PixelScale scale_;
@@ -91,6 +78,7 @@ class BeamImage {
   int last_slope_;
   std::vector<Pixel> pixels_;
   std::vector<Pixel> farthest_;
+  std::array<PolarCap, 2> caps_;
 
   /// Fills the three arrays below and the range of slopes.
   void findDirections(const PlacedScan& scan);
