@@ -38,9 +38,21 @@ struct JudgementConfig {
   }
 };
 
+struct MapConfig {
+  std::string up = "auto";
+
+  template <typename Visitor>
+  void describe(Visitor& v) {
+    v("up", up, {"auto", "z", "-z", "y", "-y", "x", "-x"},
+      "which axis of the map frame points up; auto: found from the ground of the first scans",
+      "a warning says that another surface could be the ground: the axis that points up");
+  }
+};
+
 /// Everything that decides what is removed. Defaults here equal config/default.yaml.
 struct Config {
   JudgementConfig judgement;
+  MapConfig map;
   ScanConfig scan;
   MatrixConfig matrix;
   LevellingConfig levelling;
@@ -56,6 +68,7 @@ struct Config {
   template <typename Visitor>
   void describe(Visitor& v) {
     v.group("judgement", judgement);
+    v.group("map", map);
     v.group("scan", scan);
     v.group("matrix", matrix);
     v.group("levelling", levelling);
