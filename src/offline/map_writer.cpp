@@ -22,14 +22,15 @@ namespace {
 // Points that are shown to the evaluator at once; they fit into the cache.
 constexpr std::size_t kScoredBlock = 1 << 13;
 
-/// The smallest box around all scans' points, horizontally, and their largest coordinate [m].
+/// The smallest box around all scans' points, horizontally and with up as z, and their largest
+/// coordinate in the map frame [m].
 struct Extent {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
   double largest = 0.0;
 };
 
-Extent extentOf(const MapCleaner& cleaner) {
+Extent extentOf(const MapCleaner& cleaner, const UpDirection& up) {
   Extent extent;
   const double side = cleaner.config().matrix.res_g * Tile::kSide;
   cleaner.map().forEachTile([&](ColumnIndex index, const Tile&) {
@@ -37,8 +38,10 @@ Extent extentOf(const MapCleaner& cleaner) {
     extent.low = extent.low.cwiseMin(corner);
     extent.high = extent.high.cwiseMax(corner + Eigen::Vector2d::Constant(side));
   });
-  extent.largest = std::max({extent.low.cwiseAbs().maxCoeff(), extent.high.cwiseAbs().maxCoeff(),
-                             std::abs(cleaner.zOrigin()) + cleaner.config().scan.max_range});
+  const Eigen::Vector2d largest = extent.low.cwiseAbs().cwiseMax(extent.high.cwiseAbs());
+  const Eigen::Vector3d level(largest.x(), largest.y(),
+                              std::abs(cleaner.zOrigin()) + cleaner.config().scan.max_range);
+  extent.largest = (up.levelFromMap().linear().transpose().cwiseAbs() * level).maxCoeff();
   return extent;
 }
 
@@ -56,9 +59,10 @@ MapWriter::MapWriter(const MapCleaner& cleaner, const ScanSource& source, bool l
       cleaned_(options.output + "/cleaned.pcd", options.voxel_m),
       dynamic_(options.output + "/dynamic.pcd", options.voxel_m),
       evaluator_(options.score_radius_m),
-      top_view_(topViewOf(extentOf(cleaner))),
+      T_level_map_(report.up.levelFromMap()),
+      top_view_(topViewOf(extentOf(cleaner, report.up))),
       top_views_(top_view_) {
-  report_.float64_coordinates = extentOf(cleaner).largest > kMaxFloat32Coordinate;
+  report_.float64_coordinates = extentOf(cleaner, report.up).largest > kMaxFloat32Coordinate;
 }
 
 void MapWriter::prepare(ScanView& view, SourceScan& scan, ScanOutput& output) {
@@ -115,7 +119,15 @@ void MapWriter::split(ScanOutput& output) {
     for (std::size_t i = block.first; i < block.last; ++i) {
       block.positions[i - block.first] = position_of(i);
     }
-    top_view.findPixels(block.positions.data(), block.last - block.first, block.pixels.data());
+    if (report_.up.isZ()) {
+      top_view.findPixels(block.positions.data(), block.last - block.first, block.pixels.data());
+    } else {
+      std::array<Eigen::Vector3d, Block::kMost> level;
+      for (std::size_t i = block.first; i < block.last; ++i) {
+        level[i - block.first] = T_level_map_ * block.position(i);
+      }
+      top_view.findPixels(level.data(), block.last - block.first, block.pixels.data());
+    }
     // Neighbouring points mostly have the same class.
     for (std::size_t first = block.first, last = first; first < block.last; first = last) {
       while (last < block.last && classes[last] == classes[first]) ++last;

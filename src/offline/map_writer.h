@@ -5,7 +5,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <tbb/enumerable_thread_specific.h>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -80,6 +80,7 @@ class MapWriter {
   OfflineReport& report_;
   PointFile cleaned_, dynamic_;
   Evaluator evaluator_;
+  Eigen::Isometry3d T_level_map_;  ///< for the top view
   TopView top_view_;
   tbb::enumerable_thread_specific<TopView> top_views_;  ///< of each thread, until finish()
 };

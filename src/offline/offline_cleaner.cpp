@@ -18,6 +18,7 @@
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_spool.h"
 #include "beautymap/matrix/cell_size.h"
+#include "beautymap/matrix/up_direction.h"
 #include "map_writer.h"
 #include "scan_pipeline.h"
 
@@ -34,21 +35,23 @@ struct ReadScan {
   ScanOutput output;
 };
 
-/// The first scans, up to one that says what size the cells should have.
-/// @param config  gets that size
-std::deque<SourceScan> readAhead(ScanSource& source, Config& config) {
-  constexpr std::size_t kMost = 10;
+/// The first scans, and what they say about the place.
+/// @param config  gets the cells' size
+std::deque<SourceScan> readAhead(ScanSource& source, Config& config, UpDirection& up) {
+  const std::size_t most = std::min<std::size_t>(10, source.size());
   std::deque<SourceScan> scans;
+  std::optional<double> size;
+  UpFinder finder;
   SourceScan read;
-  while (scans.size() < kMost && source.next(read)) {
+  while (scans.size() < most && !(size && config.map.up != "auto") && source.next(read)) {
     scans.push_back(read);
     Scan scan;
     convertScan(read, scan);
-    const std::optional<double> size = cellSizeFor(scan, config);
-    if (!size) continue;
-    config.matrix.res_g = *size;
-    break;
+    if (!size) size = cellSizeFor(scan, config);
+    finder.add(scan, read.T_map_sensor.linear().col(2));
   }
+  config.matrix.res_g = size.value_or(config.matrix.res_g);
+  up = finder.find(config);
   return scans;
 }
 
@@ -67,7 +70,7 @@ class OfflineRun {
       : source_(source),
         options_(options),
         progress_(progress),
-        read_ahead_(readAhead(source, config)),
+        read_ahead_(readAhead(source, config, report_.up)),
         cleaner_(config),
         spool_(options.output),
         placed_(options.output, partOf(cleaner_.passes())) {}
@@ -113,6 +116,7 @@ class OfflineRun {
   ScanSource& source_;
   const OfflineOptions& options_;
   const ProgressListener& progress_;
+  OfflineReport report_;
   std::deque<SourceScan> read_ahead_;  ///< the first scans, until observe() takes them
   MapCleaner cleaner_;
   ScanSpool spool_;                    ///< the scans as they came, for writing
@@ -120,8 +124,7 @@ class OfflineRun {
   std::vector<Levelling> levellings_;  ///< of the scans, from the first pass
   bool levelled_ = false;              ///< it is over
   std::size_t next_levelling_ = 0;     ///< of the pass at hand
-  OfflineReport report_;
-  bool labelled_ = true;  ///< until a scan without labels comes
+  bool labelled_ = true;               ///< until a scan without labels comes
 };
 
 bool OfflineRun::nextScan(SourceScan& scan) {
@@ -149,11 +152,12 @@ void OfflineRun::observe() {
   runPipeline<ReadScan>(
       [&](ReadScan& read) {
         if (!nextScan(read.source)) return false;
-        cleaner_.startAt(read.source.T_map_sensor.translation());
+        cleaner_.startAt(report_.up.levelFromMap() * read.source.T_map_sensor.translation());
         return true;
       },
       [&](ReadScan& read) {
         convertScan(read.source, read.scan);
+        report_.up.level(read.scan);
         try {
           read.unusable.clear();
           cleaner_.place(read.scan, read.view);

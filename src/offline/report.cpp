@@ -42,6 +42,9 @@ std::string toJson(const OfflineReport& report, const Config& config) {
   json["matrix"] = {{"cell_size_m", report.cell_size_m},
                     {"tiles", report.tiles},
                     {"memory_mb", report.matrix_memory_mb}};
+  json["up"] = {{"direction", {report.up.up.x(), report.up.up.y(), report.up.up.z()}},
+                {"certain", report.up.isCertain()},
+                {"meaning", report.up.describe()}};
   json["coordinates"] = report.float64_coordinates ? "float64" : "float32";
   if (report.score) {
     const Score& s = *report.score;

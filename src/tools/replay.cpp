@@ -31,6 +31,7 @@ void printReport(const OfflineReport& report, double res_g, const std::string& o
   if (report.float64_coordinates) {
     std::printf("the coordinates are too large for float32: x, y, z are written as float64\n");
   }
+  std::printf("%s%s\n", report.up.isCertain() ? "" : "WARNING: ", report.up.describe().c_str());
   if (report.cell_size_m < res_g) {
     std::printf("the first scan shows a room: cells of %g m (matrix.room_res_g)\n",
                 report.cell_size_m);

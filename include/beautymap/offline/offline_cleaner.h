@@ -14,6 +14,7 @@
 #include "beautymap/evaluation/evaluation.h"
 #include "beautymap/io/scan_source.h"
 #include "beautymap/matrix/scan.h"
+#include "beautymap/matrix/up_direction.h"
 
 namespace beautymap {
 
@@ -34,6 +35,7 @@ struct OfflineReport {
   StageTimes stages;     ///< time of each stage over all scans [ms]
   double seconds = 0.0;  ///< whole run
   double peak_memory_mb = 0.0;
+  UpDirection up;
   double cell_size_m = 0.0;  ///< horizontally: matrix.res_g or room_res_g
   double matrix_memory_mb = 0.0;
   std::size_t tiles = 0;
