@@ -18,12 +18,14 @@
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_source.h"
 #include "beautymap/matrix/cell_size.h"
+#include "beautymap/matrix/up_direction.h"
 
 namespace beautymap {
 
 struct LabelledScan {
   Scan scan;
   std::vector<PointLabel> labels;
+  Eigen::Vector3d sensor_z;  ///< in the map frame
 };
 
 /// All scans of a bag or folder; see SourceOptions for the options.
@@ -37,6 +39,7 @@ inline std::vector<LabelledScan> readLabelledScans(const std::string& input,
   while (scans.size() < most_scans && source->next(read)) {
     scans.emplace_back();
     convertScan(read, scans.back().scan);
+    scans.back().sensor_z = read.T_map_sensor.linear().col(2);
     scans.back().labels = labelsOf(read.cloud, *source);
     if (scans.back().labels.size() != scans.back().scan.cloud.size()) {
       throw InputError(input + ": there are scans without a field `label`");
@@ -116,7 +119,12 @@ int runOnLabelledScans(const char* name, int argc, char** argv, F run) {
         setParameter(config, argument);
       }
     }
-    const std::vector<LabelledScan> scans = readLabelledScans(argv[1], options, scans_wanted);
+    std::vector<LabelledScan> scans = readLabelledScans(argv[1], options, scans_wanted);
+    UpFinder finder;
+    finder.add(scans.front().scan, scans.front().sensor_z);
+    const UpDirection up = finder.find(config);
+    for (LabelledScan& scan : scans) up.level(scan.scan);
+    std::fprintf(stderr, "%s\n", up.describe().c_str());
     run(scans, config);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());

@@ -81,6 +81,8 @@ std::string UpDirection::describe() const {
   switch (basis) {
     case Basis::kTold:
       return said + ", as map.up says";
+    case Basis::kContinued:
+      return said + ", as the session has it";
     case Basis::kFound:
       return said + ", found from the ground of " + of_scans + "; map.up sets it";
     case Basis::kDoubtful:

@@ -87,7 +87,11 @@ const std::vector<PointClass>& OnlineCleaner::add(const SourceScan& source) {
     setCellSize(cellSizeFor(scan, config_).value_or(config_.matrix.res_g));
     float64_ =
         scan.sensor_in_map.cwiseAbs().maxCoeff() + config().scan.max_range > kMaxFloat32Coordinate;
+    UpFinder finder;
+    finder.add(scan, source.T_map_sensor.linear().col(2));
+    up_ = finder.find(config_);
   }
+  up_.level(scan);
   if (scan.sensor_in_map.allFinite()) fetchNear(scan.sensor_in_map);
   const auto& classes = map_.addHits(scan);
   started_ = map_.map().tileCount() > 0;
@@ -112,7 +116,7 @@ void OnlineCleaner::finish(const SourceScan& scan, bool see_free) {
   if (see_free) map_.addSeenFree();
   settled_ = false;
   stored.get();
-  storeFar(scan.T_map_sensor.translation());
+  storeFar(up_.levelFromMap() * scan.T_map_sensor.translation());
 }
 
 double OnlineCleaner::distance(ColumnIndex tile, const Eigen::Vector3d& sensor) const {
@@ -174,7 +178,7 @@ void OnlineCleaner::storeFar(const Eigen::Vector3d& sensor) {
 }
 
 TileFileWriter::Header OnlineCleaner::header(const std::string& map_frame) const {
-  return {map_frame, map_.zOrigin(), points_.layout()};
+  return {map_frame, map_.zOrigin(), up_.up, points_.layout()};
 }
 
 std::vector<ColumnIndex> OnlineCleaner::tiles() const {
@@ -272,7 +276,13 @@ OnlineCleaner::MatrixView OnlineCleaner::matrixAround(double half_side_m) const 
   const ColumnIndex centre = map_.placed().anchor;
   const ColumnWindow window{{centre.x - half, centre.y - half}, 2 * half + 1};
   return {config().matrix, map_.map().extract(window, &Tile::occupied, Bits{0}),
-          map_.map().extract(window, &Tile::dynamic, Bits{0})};
+          map_.map().extract(window, &Tile::dynamic, Bits{0}), up_.levelFromMap().inverse()};
+}
+
+std::optional<UpDirection> OnlineCleaner::up() const {
+  const FirstLock lock(*this);
+  if (!started_) return {};
+  return up_;
 }
 
 void OnlineCleaner::saveSession(const std::string& path, const std::string& map_frame) const {
@@ -301,6 +311,13 @@ void OnlineCleaner::saveSession(const std::string& path, const std::string& map_
 std::string OnlineCleaner::loadSession(const std::string& path) {
   const std::lock_guard<std::mutex> lock(mutex_);
   TileFileReader reader(path, config_);
+  const UpDirection told = UpFinder().find(config_);
+  if (config_.map.up != "auto" && told.up != reader.header().up) {
+    throw InputError("'" + path + "' was made with another direction up than map.up = " +
+                     config_.map.up + ": leave that at auto, or begin a new map");
+  }
+  up_.up = reader.header().up;
+  up_.basis = UpDirection::Basis::kContinued;
   setCellSize(reader.cellSize());
   map_.setZOrigin(reader.header().z_origin);
   points_.setLayout(reader.header().layout);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace beautymap {
 namespace {
 
-constexpr char kMagic[] = "beautymap tiles 7\n";
+constexpr char kMagic[] = "beautymap tiles 8\n";
 constexpr std::uint32_t kTile = 0x454c4954;  // "TILE"
 constexpr std::uint32_t kEnd = 0x20444e45;   // "END "
 
@@ -67,6 +68,7 @@ TileFileWriter::TileFileWriter(std::string path, const Header& header, const Con
   const Meaning meaning = meaningOf(config);
   write(&meaning, sizeof(meaning));
   write(&header.z_origin, sizeof(header.z_origin));
+  write(header.up.data(), sizeof(header.up));
   text(header.map_frame);
   number(header.layout.point_step);
   number(header.layout.fields.size());
@@ -151,6 +153,9 @@ TileFileReader::TileFileReader(const std::string& path, const Config& config) : 
                      "on with those, or begin a new map");
   }
   read(&header_.z_origin, sizeof(header_.z_origin));
+  read(header_.up.data(), sizeof(header_.up));
+  // Written so that NaN is refused.
+  if (!(std::abs(header_.up.norm() - 1.0) < 1e-6)) throw InputError("'" + path + "' is damaged");
   header_.map_frame = text();
   header_.layout.height = 1;
   header_.layout.point_step = static_cast<std::uint32_t>(number());

@@ -124,7 +124,8 @@ void BeautyMapRos::reconfigure(BeautyMapConfig& config, std::uint32_t) {
 void BeautyMapRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const CloudInput::Counts input = input_ ? input_->counts() : CloudInput::Counts();
-  const OnlineCleaner::Size size = cleaner()->size();
+  const std::shared_ptr<const OnlineCleaner> map = cleaner();
+  const OnlineCleaner::Size size = map->size();
   Totals totals;
   {
     const std::lock_guard<std::mutex> lock(totals_mutex_);
@@ -152,6 +153,7 @@ void BeautyMapRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("tf failures", input.no_pose);
   status.add("points in the map", size.points);
   status.add("size of the cells [m]", size.cell_m);
+  if (const auto up = map->up()) status.add("up", up->describe());
   status.add("tiles", size.tiles);
   status.add("tiles on disk", size.tiles_on_disk);
   status.add("memory of the map [MB]", size.memory_mb);

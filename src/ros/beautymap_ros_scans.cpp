@@ -85,6 +85,7 @@ void BeautyMapRos::process(const PosedCloud& posed) {
   const StageTimes before = map->times();
   const std::vector<PointClass>& classes = map->add(scan);
   publishSplit(posed, scan.cloud, classes);
+  sayUp(map);
   const double latency_ms = millisecondsSince(posed.received);
   // What a scan saw free takes most of the time: better to leave it out than to fall behind.
   const bool see_free = queue_.size() < kBehind;
@@ -101,6 +102,15 @@ void BeautyMapRos::process(const PosedCloud& posed) {
     totals_.latency_ms = std::max(totals_.latency_ms, latency_ms);
   }
   report(posed, classes, latency_ms, before);
+}
+
+void BeautyMapRos::sayUp(const std::shared_ptr<OnlineCleaner>& map) {
+  if (said_up_.lock() == map) return;
+  const std::optional<UpDirection> up = map->up();
+  if (!up) return;
+  said_up_ = map;
+  ROS_LOG_STREAM(up->isCertain() ? ros::console::levels::Info : ros::console::levels::Warn,
+                 ROSCONSOLE_DEFAULT_NAME, up->describe());
 }
 
 void BeautyMapRos::publishSplit(const PosedCloud& posed, const pcl::PCLPointCloud2& cloud,

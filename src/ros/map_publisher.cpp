@@ -129,7 +129,7 @@ void MapPublisher::publishCloud(CloudTopic& topic, const OnlineCleaner& cleaner,
 }
 
 void MapPublisher::publishMatrix(const OnlineCleaner& cleaner, const std::string& frame) {
-  const auto [matrix, occupied, dynamic] = cleaner.matrixAround(0.5 * matrix_size_m_);
+  const auto [matrix, occupied, dynamic, T_map_level] = cleaner.matrixAround(0.5 * matrix_size_m_);
   const ColumnWindow& window = occupied.window();
   nav_msgs::OccupancyGrid grid;
   grid.header.frame_id = frame;
@@ -137,9 +137,16 @@ void MapPublisher::publishMatrix(const OnlineCleaner& cleaner, const std::string
   grid.info.map_load_time = grid.header.stamp;
   grid.info.resolution = static_cast<float>(matrix.res_g);
   grid.info.width = grid.info.height = static_cast<std::uint32_t>(window.size);
-  grid.info.origin.position.x = window.corner.x * matrix.res_g;
-  grid.info.origin.position.y = window.corner.y * matrix.res_g;
-  grid.info.origin.orientation.w = 1.0;
+  const Eigen::Vector3d corner = T_map_level * Eigen::Vector3d(window.corner.x * matrix.res_g,
+                                                               window.corner.y * matrix.res_g, 0.0);
+  const Eigen::Quaterniond turn(T_map_level.linear());
+  grid.info.origin.position.x = corner.x();
+  grid.info.origin.position.y = corner.y();
+  grid.info.origin.position.z = corner.z();
+  grid.info.origin.orientation.x = turn.x();
+  grid.info.origin.orientation.y = turn.y();
+  grid.info.origin.orientation.z = turn.z();
+  grid.info.origin.orientation.w = turn.w();
   const Bits above_ground = ~lowBits(matrix.bits_below + 1);
   for (int y = 0; y < window.size; ++y) {
     for (int x = 0; x < window.size; ++x) {

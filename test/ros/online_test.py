@@ -379,6 +379,30 @@ class Online(unittest.TestCase):
             node.wait_for_scans(SCANS)
             self.check_map(node)
 
+    def test_a_map_that_is_upside_down_stays_so_and_is_cleaned(self):
+        def turn(topic, message, t):
+            for part in getattr(message, "transforms", []):
+                if part.header.frame_id != "map":
+                    continue
+                p, q = part.transform.translation, part.transform.rotation
+                p.y, p.z = -p.y, -p.z
+                q.x, q.y, q.z, q.w = q.w, -q.z, q.y, -q.x  # after half a turn about x
+            return [(topic, message, t)]
+
+        bag = self.rewrite("turned.bag", turn)
+        self.run_tool("replay", bag, "--output", self.folder / "turned")
+        with running(self.parameters()) as node:
+            play(bag)
+            node.wait_for_scans(SCANS)
+            saved = node.call("save_map", SaveMap, path="turned.pcd", voxel=0.0, session=False)
+            self.assertTrue(saved.success, saved.message)
+            self.assertGreater(saved.removed_points, 100)
+            share = agreement(self.folder / "out/turned", self.folder / "turned")
+            self.assertGreaterEqual(share, 0.99)
+            wait_for(lambda: node.matrices, "the matrix")
+            self.assertAlmostEqual(abs(node.matrices[-1].info.origin.orientation.x), 1.0)
+            self.assertIn("up is -z of the map frame", node.output())
+
     def check_preset(self, preset, change):
         bag = self.rewrite(preset + ".bag", change)
         with running(launch=[str(PACKAGE / "launch/online.launch"), "preset:=" + preset,

@@ -21,7 +21,8 @@ struct UpDirection {
     kTold,      ///< by map.up
     kFound,     ///< from the ground
     kDoubtful,  ///< the same, but another surface could be the ground as well
-    kAssumed    ///< no ground was found: z
+    kAssumed,   ///< no ground was found: z
+    kContinued  ///< as the map was begun with
   };
 
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< unit vector of the map frame
@@ -29,8 +30,8 @@ struct UpDirection {
   std::size_t scans = 0;  ///< that were looked at
 
   bool isZ() const { return up == Eigen::Vector3d::UnitZ(); }
-  bool isCertain() const { return basis == Basis::kTold || basis == Basis::kFound; }
-  /// Turns the map frame so that up becomes z; exact where up is an axis.
+  bool isCertain() const { return basis != Basis::kDoubtful && basis != Basis::kAssumed; }
+  /// T_level_map, which turns the map frame so that up becomes z; exact where up is an axis.
   Eigen::Isometry3d levelFromMap() const;
   /// Turns where a scan was taken.
   void level(Scan& scan) const;

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,13 +17,15 @@
 #include "beautymap/cleaner/online_map.h"
 #include "beautymap/config/config.h"
 #include "beautymap/io/scan_source.h"
+#include "beautymap/matrix/up_direction.h"
 #include "beautymap/online/point_store.h"
 #include "beautymap/online/tile_file.h"
 
 namespace beautymap {
 
 /// A map that is cleaned while it grows: the matrix, the points, and tiles on disk when a radius is
-/// set. One thread adds scans; others may look at the map at the same time, a tile at a time, and
+/// set. Tiles are where they are with up as z; points, what is saved and published, are in the map
+/// frame. One thread adds scans; others may look at the map at the same time, a tile at a time, and
 /// give way to the scans.
 class OnlineCleaner {
  public:
@@ -59,8 +62,12 @@ class OnlineCleaner {
   struct MatrixView {
     MatrixConfig config;
     BitGrid occupied, dynamic;
+    Eigen::Isometry3d T_map_level;  ///< its columns stand upright in the level frame
   };
   MatrixView matrixAround(double half_side_m) const;
+
+  /// Which way is up, as the first scan or a session says; nothing before.
+  std::optional<UpDirection> up() const;
 
   /// Writes the whole state, so that load() can go on with it.
   void saveSession(const std::string& path, const std::string& map_frame) const;
@@ -103,6 +110,7 @@ class OnlineCleaner {
   mutable bool settled_ = true;  ///< everything in the map is judged
   PointStore points_;
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> on_disk_;  ///< tile: its points
+  UpDirection up_;
   bool float64_ = false;
   bool started_ = false;
   mutable std::mutex mutex_;

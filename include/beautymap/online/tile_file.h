@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -21,7 +22,8 @@ class TileFileWriter : private ByteSink {
   struct Header {
     std::string map_frame;
     double z_origin = 0.0;
-    pcl::PCLPointCloud2 layout;  ///< of the points' records
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< see UpDirection
+    pcl::PCLPointCloud2 layout;                     ///< of the points' records
   };
 
   /// @throws InputError when the file cannot be made, or (append, close) the disk is full.

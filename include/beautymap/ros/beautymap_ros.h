@@ -64,6 +64,8 @@ class BeautyMapRos {
   void work();
   void skip(const std::string& why);
   void process(const PosedCloud& posed);
+  /// Once for each map.
+  void sayUp(const std::shared_ptr<OnlineCleaner>& map);
   void publishSplit(const PosedCloud& posed, const pcl::PCLPointCloud2& cloud,
                     const std::vector<PointClass>& classes);
   void report(const PosedCloud& posed, const std::vector<PointClass>& classes, double latency_ms,
@@ -87,6 +89,7 @@ class BeautyMapRos {
   mutable std::mutex map_mutex_;  ///< of the pointers, not of the map
   std::shared_ptr<OnlineCleaner> cleaner_;
   std::string map_frame_;
+  std::weak_ptr<const OnlineCleaner> said_up_;  ///< of this map
   std::mutex process_mutex_;  ///< held while a scan is added, and while another map takes over
   std::unique_ptr<ScanLog> log_;
   ScanQueue<PosedCloud> queue_;
