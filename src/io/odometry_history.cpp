@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scan_files.h"
+#include "stamps.h"
 #include "text.h"
 #include "tf_history.h"
 
@@ -20,7 +21,8 @@ void OdometryHistory::insert(const nav_msgs::Odometry& message) {
   const auto& t = message.pose.pose.position;
   const auto& q = message.pose.pose.orientation;
   Eigen::Isometry3d pose;
-  if (!makePose({t.x, t.y, t.z}, {q.w, q.x, q.y, q.z}, pose)) {
+  if (!isPlausible(message.header.stamp) ||
+      !makePose({t.x, t.y, t.z}, {q.w, q.x, q.y, q.z}, pose)) {
     ++unusable_;
     return;
   }
@@ -48,6 +50,10 @@ void OdometryHistory::forgetBefore(std::uint64_t stamp_ns) {
   const auto keep = std::find_if(samples_.begin(), samples_.end(),
                                  [&](const Sample& sample) { return sample.stamp_ns >= stamp_ns; });
   samples_.erase(samples_.begin(), keep);
+}
+
+bool OdometryHistory::isStillToCome(std::uint64_t stamp_ns) const {
+  return samples_.empty() || stamp_ns > samples_.back().stamp_ns + kSlackNs;
 }
 
 std::optional<Eigen::Isometry3d> OdometryHistory::lookup(std::uint64_t stamp_ns,

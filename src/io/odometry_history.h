@@ -28,6 +28,9 @@ class OdometryHistory {
   /// @return nothing where it is not known; `why` then says why not
   std::optional<Eigen::Isometry3d> lookup(std::uint64_t stamp_ns, std::string& why) const;
 
+  /// Whether messages that come may yet say where that was; otherwise lookup() has its last word.
+  bool isStillToCome(std::uint64_t stamp_ns) const;
+
   std::size_t size() const { return samples_.size(); }
   /// header.frame_id and child_frame_id of the first message.
   const std::string& mapFrame() const { return map_frame_; }

@@ -8,6 +8,7 @@
 
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
+#include "beautymap/io/new_file.h"
 #include "scan_files.h"
 
 namespace beautymap {
@@ -58,12 +59,13 @@ void appendPoints(const pcl::PCLPointCloud2& cloud, const std::vector<PointLabel
 }  // namespace
 
 PcdFolderSink::PcdFolderSink(const std::string& path, const ScanSource& source)
-    : path_(path), temporary_path_(temporaryBeside(path)), source_(source) {
+    : path_(path), source_(source) {
   std::error_code error;
   if (fs::exists(path_, error) && !(fs::is_directory(path_, error) && fs::is_empty(path_, error))) {
     throw InputError(path_ + ": exists already and is not an empty folder; nothing was written");
   }
-  fs::create_directories(fs::path(temporary_path_) / "pcd", error);
+  temporary_path_ = newFolderBeside(path_);
+  fs::create_directory(fs::path(temporary_path_) / "pcd", error);
   if (error) throw InputError("cannot create " + temporary_path_ + ": " + error.message());
 }
 

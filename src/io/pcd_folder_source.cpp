@@ -44,7 +44,7 @@ bool liesAroundTheOrigin(const std::filesystem::path& file, const Eigen::Vector3
   try {
     const pcl::PCLPointCloud2 cloud = readPcd(file.string());
     return medianDistance(cloud, sensor) > kFactor * medianDistance(cloud, Eigen::Vector3d::Zero());
-  } catch (const InputError&) {
+  } catch (const std::exception&) {
     return false;  // next() counts the file as unreadable
   }
 }
@@ -87,7 +87,7 @@ void PcdFolderSource::readViewpoints() {
         file.unusable = "VIEWPOINT is not a pose";
         file.example = file.path.string() + ": not finite, or its quaternion is far from length 1";
       }
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {
       file.unusable = "unreadable PCD file";
       file.example = error.what();
     }
@@ -141,7 +141,7 @@ bool PcdFolderSource::next(SourceScan& scan) {
     }
     try {
       scan.cloud = readPcd(file.path.string());
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {  // too large for the memory, for instance
       skip("unreadable PCD file", error.what());
       continue;
     }

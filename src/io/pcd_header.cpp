@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
@@ -28,12 +29,23 @@ constexpr std::size_t kMaxHeaderBytes = 1 << 20;
   throw InputError(path + ": " + what);
 }
 
+/// std::getline(), but a line without end takes no more than `most` bytes.
+bool readLine(std::istream& in, std::string& line, std::size_t most) {
+  line.clear();
+  for (int c = in.get(); c != std::istream::traits_type::eof(); c = in.get()) {
+    if (c == '\n') return true;
+    if (line.size() >= most) return false;
+    line.push_back(static_cast<char>(c));
+  }
+  return !line.empty();
+}
+
 /// The words of every line up to DATA, by the line's first word.
 Lines readLines(std::istream& in, const std::string& path) {
   Lines lines;
   std::size_t bytes = 0;
   std::string line;
-  while (std::getline(in, line)) {
+  while (readLine(in, line, kMaxHeaderBytes - bytes)) {
     bytes += line.size() + 1;
     if (bytes > kMaxHeaderBytes) break;
     std::istringstream words(line);
@@ -117,7 +129,8 @@ void parseFields(const Lines& lines, const std::string& path, PcdHeader& header)
     if (size == 0 || size > 8 || count > kMaxPointStep || offset + size * count > kMaxPointStep) {
       fail(path, "the field '" + names[i] + "' of the PCD header has an impossible size");
     }
-    if (names[i] != "_") {
+    const bool is_padding = names[i] == "_";
+    if (!is_padding) {
       pcl::PCLPointField field;
       field.name = names[i];
       field.offset = static_cast<std::uint32_t>(offset);
@@ -130,7 +143,8 @@ void parseFields(const Lines& lines, const std::string& path, PcdHeader& header)
       header.layout.fields.push_back(field);
       header.ascii_columns.push_back(column);
     }
-    offset += size * count;
+    // Only binary records hold the padding; elsewhere a header could ask for any memory with it.
+    if (!is_padding || header.encoding == PcdHeader::Encoding::kBinary) offset += size * count;
     column += count;
   }
   header.layout.point_step = static_cast<std::uint32_t>(offset);
@@ -196,8 +210,7 @@ std::string shortest(double value) {
 }  // namespace
 
 PcdHeader readPcdHeader(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) fail(path, "is a folder, not a PCD file");
+  requireRegularFile(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
   const Lines lines = readLines(in, path);

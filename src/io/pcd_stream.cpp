@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beautymap/io/pcd_stream.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -26,10 +24,6 @@ bool sameFields(const std::vector<pcl::PCLPointField>& a,
     return l.name == r.name && l.offset == r.offset && l.datatype == r.datatype &&
            l.count == r.count;
   });
-}
-
-[[noreturn]] void failWriting(const std::string& path) {
-  throw InputError("cannot write " + path + ": " + std::strerror(errno));
 }
 
 pcl::PCLPointCloud2 readWhole(const std::string& path, const PcdHeader& header) {
@@ -81,8 +75,7 @@ pcl::PCLPointCloud2 slice(const pcl::PCLPointCloud2& cloud, std::size_t first, s
 
 PcdStreamWriter::PcdStreamWriter(std::string path, const pcl::PCLPointCloud2& like,
                                  const Eigen::Isometry3d& viewpoint)
-    : path_(std::move(path)),
-      temporary_path_(path_ + ".tmp-" + std::to_string(::getpid())),
+    : file_(std::move(path)),
       input_fields_(like.fields),
       input_step_(like.point_step),
       buffer_(kBufferBytes) {
@@ -96,7 +89,7 @@ PcdStreamWriter::PcdStreamWriter(std::string path, const pcl::PCLPointCloud2& li
     offset += size;
   }
   header_.layout.point_step = static_cast<std::uint32_t>(offset);
-  if (offset == 0) throw InputError("cannot write " + path_ + ": the points have no fields");
+  if (offset == 0) throw InputError("cannot write " + file_.path() + ": the points have no fields");
   if (buffer_.size() < offset) buffer_.resize(offset);
   header_.origin = viewpoint.translation();
   header_.orientation = Eigen::Quaterniond(viewpoint.linear());
@@ -106,22 +99,8 @@ PcdStreamWriter::PcdStreamWriter(std::string path, const pcl::PCLPointCloud2& li
   const std::string header = writePcdHeader(header_);
   header_.points = 0;
   header_length_ = header.size();
-  file_ = std::fopen(temporary_path_.c_str(), "wb");
-  if (file_ == nullptr) failWriting(path_);
-  std::setvbuf(file_, nullptr, _IONBF, 0);
-  if (std::fwrite(header.data(), 1, header.size(), file_) != header.size()) {
-    const int error = errno;
-    std::fclose(file_);
-    std::remove(temporary_path_.c_str());
-    errno = error;
-    failWriting(path_);
-  }
-}
-
-PcdStreamWriter::~PcdStreamWriter() {
-  if (file_ == nullptr) return;
-  std::fclose(file_);
-  std::remove(temporary_path_.c_str());
+  std::setvbuf(file_.stream(), nullptr, _IONBF, 0);
+  file_.write(header.data(), header.size());
 }
 
 void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t count) {
@@ -130,7 +109,7 @@ void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t coun
   header_.points += count;
   if (is_packed && count * step >= buffer_.size()) {
     flush();
-    write(point_records, count * step);
+    file_.write(point_records, count * step);
     return;
   }
   while (count > 0) {
@@ -150,29 +129,16 @@ void PcdStreamWriter::append(const std::uint8_t* point_records, std::size_t coun
   }
 }
 
-void PcdStreamWriter::flush() { write(buffer_.data(), std::exchange(buffered_, 0)); }
-
-void PcdStreamWriter::write(const std::uint8_t* bytes, std::size_t size) {
-  if (std::fwrite(bytes, 1, size, file_) != size) failWriting(path_);
-}
+void PcdStreamWriter::flush() { file_.write(buffer_.data(), std::exchange(buffered_, 0)); }
 
 void PcdStreamWriter::close() {
-  if (file_ == nullptr) return;
+  if (closed_) return;
   flush();
   const std::string header = writePcdHeader(header_, header_length_);
-  if (std::fseek(file_, 0, SEEK_SET) != 0 ||
-      std::fwrite(header.data(), 1, header.size(), file_) != header.size()) {
-    failWriting(path_);
-  }
-  std::FILE* file = std::exchange(file_, nullptr);
-  const bool failed =
-      std::fclose(file) != 0 || std::rename(temporary_path_.c_str(), path_.c_str()) != 0;
-  if (failed) {
-    const int error = errno;
-    std::remove(temporary_path_.c_str());
-    errno = error;
-    failWriting(path_);
-  }
+  if (std::fseek(file_.stream(), 0, SEEK_SET) != 0) file_.fail();
+  file_.write(header.data(), header.size());
+  file_.commit();
+  closed_ = true;
 }
 
 bool PcdStreamWriter::accepts(const pcl::PCLPointCloud2& cloud) const {

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <map>
 
+#include "bag_check.h"
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
@@ -22,6 +24,7 @@ bool startsWith(const std::string& text, const std::string& start) {
 void checkSignature(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw InputError(path + ": there is no such file");
+  requireRegularFile(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path + ": cannot be opened: " + std::strerror(errno));
   std::string start(16, '\0');
@@ -47,6 +50,9 @@ std::unique_ptr<rosbag::Bag> openBag(const std::string& path) {
   checkSignature(path);
   const std::string cure =
       ". The recording was probably cut off: run `rosbag reindex " + path + "` and try again";
+  if (const auto wrong = findBagDamage(path)) {
+    throw InputError(path + ": is truncated or broken (" + *wrong + ")" + cure);
+  }
   try {
     // Not opened by its constructor: what open() has read when it throws is then never freed.
     auto bag = std::make_unique<rosbag::Bag>();

@@ -9,10 +9,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/moving_labels.h"
-#include "scan_files.h"
+#include "stamps.h"
+#include "text.h"
 
 namespace beautymap {
 namespace {
@@ -45,31 +47,43 @@ void useMessageTypes(pcl::PCLPointCloud2& cloud) {
 
 RosbagSink::RosbagSink(const std::string& path, const SinkOptions& options,
                        const ScanSource& source)
-    : path_(path), temporary_path_(temporaryBeside(path)), options_(options), source_(source) {
+    : file_(path), options_(options), source_(source), bag_(std::make_unique<rosbag::Bag>()) {
   std::error_code error;
-  if (std::filesystem::is_directory(path_, error)) throw InputError(path_ + ": is a folder");
-  try {
-    bag_.open(temporary_path_, rosbag::bagmode::Write);
-    bag_.setCompression(rosbag::compression::LZ4);
-  } catch (const rosbag::BagException& exception) {
-    throw InputError("cannot write " + path_ + ": " + exception.what());
-  }
+  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder");
+  attempt([&] {
+    bag_->open(file_.temporaryPath(), rosbag::bagmode::Write);
+    bag_->setCompression(rosbag::compression::LZ4);
+  });
 }
 
 RosbagSink::~RosbagSink() {
-  if (closed_) return;
+  if (bag_ == nullptr || closed_) return;
   try {
-    bag_.close();
+    attempt([&] { bag_->close(); });
   } catch (const std::exception&) {
     // The file is removed anyway.
   }
-  std::error_code error;
-  std::filesystem::remove(temporary_path_, error);
+}
+
+template <typename Step>
+void RosbagSink::attempt(Step step) {
+  try {
+    if (bag_ == nullptr) throw std::runtime_error("an earlier write failed");
+    step();
+  } catch (const std::exception& exception) {
+    // On a full disk the bag's destructor would fail as well, and end the process: it is left
+    // alone.
+    static_cast<void>(bag_.release());
+    throw InputError("cannot write " + file_.path() + ": " + exception.what());
+  }
 }
 
 void RosbagSink::write(const SourceScan& scan) {
   const std::uint64_t stamp_ns =
       scan.stamp_ns > 0 ? scan.stamp_ns : kFirstStampNs + scans_ * kScanPeriodNs;
+  if (stamp_ns > kLatestStampNs) {
+    throw InputError("a scan's stamp of " + inSeconds(stamp_ns) + " is too late for a bag");
+  }
   ros::Time stamp;
   stamp.fromNSec(stamp_ns);
   pcl::PCLPointCloud2 cloud = inSensorFrame(scan);
@@ -80,12 +94,10 @@ void RosbagSink::write(const SourceScan& scan) {
   message.header.stamp = stamp;  // PCL's has microseconds only
   message.header.frame_id = options_.sensor_frame;
   message.header.seq = static_cast<std::uint32_t>(scans_);
-  try {
+  attempt([&] {
     writePose(scan.T_map_sensor, stamp);
-    bag_.write(options_.cloud_topic, stamp, message);
-  } catch (const rosbag::BagException& exception) {
-    throw InputError("cannot write " + path_ + ": " + exception.what());
-  }
+    bag_->write(options_.cloud_topic, stamp, message);
+  });
   ++scans_;
 }
 
@@ -114,18 +126,14 @@ void RosbagSink::writePose(const Eigen::Isometry3d& T_map_sensor, const ros::Tim
   transform.transform.rotation = pose.orientation;
   tf2_msgs::TFMessage tf;
   tf.transforms.push_back(transform);
-  bag_.write("/tf", stamp, tf);
-  bag_.write("/odom", stamp, odometry);
+  bag_->write("/tf", stamp, tf);
+  bag_->write("/odom", stamp, odometry);
 }
 
 void RosbagSink::close() {
   if (closed_) return;
-  try {
-    bag_.close();
-    std::filesystem::rename(temporary_path_, path_);
-  } catch (const std::exception& exception) {
-    throw InputError("cannot write " + path_ + ": " + exception.what());
-  }
+  attempt([&] { bag_->close(); });
+  file_.commit();
   closed_ = true;
 }
 

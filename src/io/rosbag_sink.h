@@ -4,8 +4,10 @@
 
 #include <rosbag/bag.h>
 
+#include <memory>
 #include <string>
 
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/scan_sink.h"
 
 namespace beautymap {
@@ -24,13 +26,15 @@ class RosbagSink : public ScanSink {
   void close() override;
 
  private:
+  /// @throws InputError for whatever a step of writing throws
+  template <typename Step>
+  void attempt(Step step);
   void writePose(const Eigen::Isometry3d& T_map_sensor, const ros::Time& stamp);
 
-  std::string path_;
-  std::string temporary_path_;
+  NewFile file_;
   SinkOptions options_;
   const ScanSource& source_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;
   std::size_t scans_ = 0;
   bool closed_ = false;
 };

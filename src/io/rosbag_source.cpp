@@ -14,6 +14,7 @@
 
 #include "beautymap/io/cloud_fields.h"
 #include "scan_files.h"
+#include "stamps.h"
 #include "text.h"
 
 namespace beautymap {
@@ -31,17 +32,17 @@ struct Window {
 };
 
 Window chooseWindow(const RosbagFiles& files, const SourceOptions& options) {
-  const double length_s = (files.end() - files.begin()).toSec();
+  const double length_s = secondsBetween(files.end(), files.begin());
   Window window;
   if (options.start_s > 0.0) {
     if (options.start_s > length_s) {
       throw InputError("start is " + std::to_string(options.start_s) +
                        " s, but the input is only " + std::to_string(length_s) + " s long");
     }
-    window.begin = files.begin() + ros::Duration(options.start_s);
+    window.begin = shifted(files.begin(), options.start_s);
   }
   if (options.duration_s > 0.0 && options.start_s + options.duration_s < length_s) {
-    window.end = files.begin() + ros::Duration(options.start_s + options.duration_s);
+    window.end = shifted(files.begin(), options.start_s + options.duration_s);
   }
   return window;
 }
@@ -49,10 +50,8 @@ Window chooseWindow(const RosbagFiles& files, const SourceOptions& options) {
 /// Poses are recorded before and after the scans that need them. A little of a long recording must
 /// not take the time of reading it all.
 Window widened(Window window) {
-  const ros::Duration margin(30.0);
-  if (window.begin > ros::TIME_MIN + margin) window.begin -= margin;
-  if (window.end < ros::TIME_MAX - margin) window.end += margin;
-  return window;
+  constexpr double kMargin = 30.0;  // [s]
+  return {shifted(window.begin, -kMargin), shifted(window.end, kMargin)};
 }
 
 bool endsWith(const std::string& text, const std::string& end) {
@@ -157,8 +156,10 @@ std::vector<Window> stretchesOf(const RosbagFiles& files, const Window& window,
   const std::uint64_t length = std::min(window.end, files.end()).toNSec() - begin + 1;
   std::vector<Window> stretches(count);
   for (std::uint64_t i = 0; i < count; ++i) {
-    stretches[i].begin.fromNSec(begin + length * i / count);
-    stretches[i].end.fromNSec(begin + length * (i + 1) / count - 1);
+    // In this order nothing overflows, whatever a damaged bag has as its times.
+    stretches[i].begin.fromNSec(begin + length / count * i);
+    stretches[i].end.fromNSec(i + 1 < count ? begin + length / count * (i + 1) - 1
+                                            : begin + length - 1);
   }
   return stretches;
 }
@@ -259,7 +260,7 @@ std::unique_ptr<ScanPoses> RosbagSource::loadPoses(const SourceOptions& options)
 
 void RosbagSource::describeFirstScan(rosbag::View& view) {
   char length[64];
-  std::snprintf(length, sizeof(length), "%.1f s", (files_.end() - files_.begin()).toSec());
+  std::snprintf(length, sizeof(length), "%.1f s", secondsBetween(files_.end(), files_.begin()));
   description_ = {"bags: " + join(files_.paths()) + " (" + length + ")"};
   SourceScan scan;
   bool found = false;
@@ -291,6 +292,10 @@ bool RosbagSource::use(const RecordedCloud& recorded, SourceScan& scan) {
   const std::string which = "scan at " + inSeconds(scan.stamp_ns) + ": ";
   if (scan.stamp_ns == 0) {
     skip("stamp 0", when + "header.stamp is 0, so its pose is unknown");
+    return false;
+  }
+  if (scan.stamp_ns > kLatestStampNs) {
+    skip("stamp after 2033", which + "its clock was never set");
     return false;
   }
   if (cloud->width == 0 || cloud->height == 0) {

@@ -22,7 +22,8 @@ PositionReader::PositionReader(const pcl::PCLPointCloud2& cloud)
     : x_(cloud, "x"), y_(cloud, "y"), z_(cloud, "z"), point_step_(cloud.point_step) {
   constexpr std::uint8_t kFloat = pcl::PCLPointField::FLOAT32;
   const bool floats = x_.datatype() == kFloat && y_.datatype() == kFloat && z_.datatype() == kFloat;
-  if (floats && y_.offset() == x_.offset() + 4 && z_.offset() == x_.offset() + 8) {
+  if (floats && !cloud.data.empty() && y_.offset() == x_.offset() + 4 &&
+      z_.offset() == x_.offset() + 8) {
     floats_ = cloud.data.data() + x_.offset();
   }
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan_files.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -67,13 +65,6 @@ std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder
   return files;
 }
 
-std::string temporaryBeside(const std::string& path) {
-  // "out/" and "out" are the same folder.
-  const std::size_t end = path.find_last_not_of('/');
-  return path.substr(0, end == std::string::npos ? path.size() : end + 1) + ".tmp-" +
-         std::to_string(::getpid());
-}
-
 std::string describePose(const Eigen::Isometry3d& T_map_sensor) {
   const Eigen::Vector3d t = T_map_sensor.translation();
   const double yaw_rad = std::atan2(T_map_sensor.linear()(1, 0), T_map_sensor.linear()(0, 0));
@@ -89,7 +80,13 @@ bool makePose(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rota
   // rotation (all zero: a message that nobody filled in).
   constexpr double kTolerance = 0.1;
   const double norm = rotation.norm();
-  if (!translation.allFinite() || !(std::abs(norm - 1.0) < kTolerance)) return false;
+  // The earth's centre is nearer; what is farther is no place of a robot, and would take the
+  // millimetres from all others.
+  constexpr double kFarthest = 1e7;  // [m]
+  if (!(translation.cwiseAbs().maxCoeff() <= kFarthest) || !translation.allFinite() ||
+      !(std::abs(norm - 1.0) < kTolerance)) {
+    return false;
+  }
   pose.setIdentity();
   pose.linear() = rotation.normalized().toRotationMatrix();
   pose.translation() = translation;

@@ -17,14 +17,12 @@ std::vector<std::filesystem::path> listFiles(const std::filesystem::path& folder
 /// Whether a comes before b in natural order.
 bool naturalLess(const std::string& a, const std::string& b);
 
-/// A path beside `path` for output that is renamed when it is complete.
-std::string temporaryBeside(const std::string& path);
-
 /// `x 1.00 y 2.00 z 0.50 m, yaw 90.0 deg`
 std::string describePose(const Eigen::Isometry3d& T_map_sensor);
 
 /// An isometry from a translation [m] and a quaternion that need not be normalized.
-/// @return false when either is not finite or the quaternion is far from length 1
+/// @return false when either is not finite, the translation more than 10000 km, or the quaternion
+/// far from length 1
 bool makePose(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation,
               Eigen::Isometry3d& pose);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "scan_files.h"
+#include "stamps.h"
 
 namespace beautymap {
 namespace {
@@ -48,12 +49,12 @@ void TfHistory::insert(const geometry_msgs::TransformStamped& transform, bool is
   const auto& q = transform.transform.rotation;
   Eigen::Isometry3d pose;
   // tf2 would refuse these one by one, with a message on the console for each.
-  if (parent.empty() || child.empty() || parent == child ||
+  if (parent.empty() || child.empty() || parent == child || !isPlausible(transform.header.stamp) ||
       !makePose({t.x, t.y, t.z}, {q.w, q.x, q.y, q.z}, pose)) {
     if (unusable_++ == 0) {
       unusable_example_ = "'" + parent + "' -> '" + child +
-                          "': a frame without name or its own child, not finite, or a quaternion "
-                          "far from length 1";
+                          "': a frame without name or its own child, not finite, farther than "
+                          "10000 km, a quaternion far from length 1, or a stamp after 2033";
     }
     return;
   }

@@ -6,14 +6,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <utility>
 
 #include "beautymap/cleaner/map_cleaner.h"
 #include "beautymap/io/cloud_fields.h"
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/placed_spool.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/io/scan_spool.h"
@@ -43,7 +44,7 @@ std::deque<SourceScan> readAhead(ScanSource& source, Config& config, UpDirection
   std::optional<double> size;
   UpFinder finder;
   SourceScan read;
-  while (scans.size() < most && !(size && config.map.up != "auto") && source.next(read)) {
+  while (scans.size() < most && source.next(read)) {
     scans.push_back(read);
     Scan scan;
     convertScan(read, scan);
@@ -60,6 +61,22 @@ PlacedSpool::Part partOf(const std::vector<JudgementPass>& passes) {
   const bool all = std::any_of(passes.begin(), passes.end(),
                                [](const JudgementPass& pass) { return pass.needs_xy; });
   return all ? PlacedSpool::Part::kAll : PlacedSpool::Part::kHeights;
+}
+
+/// Heights count from the first sensor, or from the one of median height where the first is far
+/// from it: a first pose that makes no sense would take the millimetres from all points.
+Eigen::Vector3d originOf(const std::deque<SourceScan>& scans, const UpDirection& up) {
+  constexpr double kFar = 1000.0;  // [m]
+  const Eigen::Isometry3d T_level_map = up.levelFromMap();
+  std::vector<double> heights;
+  for (const SourceScan& scan : scans) {
+    heights.push_back((T_level_map * scan.T_map_sensor.translation()).z());
+  }
+  Eigen::Vector3d origin = T_level_map * scans.front().T_map_sensor.translation();
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  if (std::abs(origin.z() - *middle) > kFar) origin.z() = *middle;
+  return origin;
 }
 
 /// The passes over the scans, in their order.
@@ -145,6 +162,7 @@ bool OfflineRun::nextPlaced(ScanView& view, Part part) {
 
 void OfflineRun::observe() {
   progress_.begin("reading", source_.size());
+  if (!read_ahead_.empty()) cleaner_.startAt(originOf(read_ahead_, report_.up));
   const auto skip = [&](const std::string& reason, const std::string& example) {
     Skipped& skipped = report_.skipped_scans[reason];
     if (skipped.count++ == 0) skipped.example = example;
@@ -228,16 +246,6 @@ void OfflineRun::write() {
   writer.finish();
 }
 
-void writeText(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".tmp";
-  {
-    std::ofstream file(temporary);
-    file << text;
-    if (!file.flush()) throw InputError("cannot write '" + path + "'");
-  }
-  std::filesystem::rename(temporary, path);
-}
-
 }  // namespace
 
 OfflineReport cleanOffline(ScanSource& source, const Config& config, const OfflineOptions& options,
@@ -248,7 +256,10 @@ OfflineReport cleanOffline(ScanSource& source, const Config& config, const Offli
     throw InputError("cannot make the folder '" + options.output + "': " + error.message());
   }
   OfflineReport report = OfflineRun(source, config, options, progress).run();
-  writeText(options.output + "/report.json", toJson(report, config));
+  const std::string json = toJson(report, config);
+  NewFile file(options.output + "/report.json");
+  file.write(json.data(), json.size());
+  file.commit();
   return report;
 }
 

@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "../base/vector_clones.h"
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/scan_source.h"
 
 namespace beautymap {
@@ -60,12 +61,11 @@ void Picture::writePng(const std::string& path) const {
   image.height = static_cast<png_uint_32>(height_);
   image.format = PNG_FORMAT_RGB;
   image.flags = PNG_IMAGE_FLAG_FAST;
-  const std::string temporary = path + ".tmp";
-  if (!png_image_write_to_file(&image, temporary.c_str(), 0, pixels_.data(), 0, nullptr) ||
-      std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw InputError("cannot write '" + path + "': " + image.message);
+  NewFile file(path);
+  if (!png_image_write_to_stdio(&image, file.stream(), 0, pixels_.data(), 0, nullptr)) {
+    throw InputError("cannot write " + path + ": " + image.message);
   }
+  file.commit();
 }
 
 TopView::TopView(const Eigen::Vector2d& corner, const Eigen::Vector2d& extent)

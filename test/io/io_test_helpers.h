@@ -135,6 +135,14 @@ class BagWriter {
     return rawTf(stamp, parent, child, pose.translation(), q.coeffs(), topic);
   }
 
+  BagWriter& message(const std::string& topic, double record_time,
+                     const geometry_msgs::TransformStamped& transform) {
+    tf2_msgs::TFMessage message;
+    message.transforms.push_back(transform);
+    bag_.write(topic, ros::Time(record_time), message);
+    return *this;
+  }
+
   BagWriter& rawTf(double stamp, const std::string& parent, const std::string& child,
                    const Eigen::Vector3d& t, const Eigen::Vector4d& q,
                    const std::string& topic = "/tf") {
@@ -156,7 +164,8 @@ class BagWriter {
   }
 
   BagWriter& odometry(double stamp, const std::string& frame, const std::string& child,
-                      const Eigen::Isometry3d& pose, const std::string& topic = "/odom") {
+                      const Eigen::Isometry3d& pose, const std::string& topic = "/odom",
+                      double record_time = 0.0) {
     const Eigen::Quaterniond q(pose.linear());
     nav_msgs::Odometry message;
     message.header.stamp = ros::Time(stamp);
@@ -169,7 +178,7 @@ class BagWriter {
     message.pose.pose.orientation.y = q.y();
     message.pose.pose.orientation.z = q.z();
     message.pose.pose.orientation.w = q.w();
-    bag_.write(topic, ros::Time(stamp), message);
+    bag_.write(topic, ros::Time(record_time > 0.0 ? record_time : stamp), message);
     return *this;
   }
 

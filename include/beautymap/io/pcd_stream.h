@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "beautymap/io/copy_runs.h"
+#include "beautymap/io/new_file.h"
 #include "beautymap/io/pcd_header.h"
 
 namespace beautymap {
@@ -28,10 +29,6 @@ class PcdStreamWriter {
   /// @throws InputError when the file cannot be created.
   PcdStreamWriter(std::string path, const pcl::PCLPointCloud2& like,
                   const Eigen::Isometry3d& viewpoint = Eigen::Isometry3d::Identity());
-  /// Removes what was written, unless close() succeeded.
-  ~PcdStreamWriter();
-  PcdStreamWriter(const PcdStreamWriter&) = delete;
-  PcdStreamWriter& operator=(const PcdStreamWriter&) = delete;
 
   /// Appends points of a cloud that has the same fields and the same layout as `like`, one record
   /// after the other.
@@ -46,11 +43,9 @@ class PcdStreamWriter {
 
  private:
   void flush();
-  void write(const std::uint8_t* bytes, std::size_t size);
 
-  std::string path_;
-  std::string temporary_path_;
-  std::FILE* file_ = nullptr;
+  NewFile file_;
+  bool closed_ = false;
   std::vector<pcl::PCLPointField> input_fields_;
   std::size_t input_step_;
   PcdHeader header_;
