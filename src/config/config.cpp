@@ -253,6 +253,18 @@ void checkConfig(const Config& config) {
     throw ConfigError("matrix.roi_size = " + text(config.matrix.roi_size) + " must be at most " +
                       text(kMaxColumns) + " cells of " + text(smallest) + " m");
   }
+  // What a scan of few points may ask for: each may lie in a tile of its own.
+  constexpr double kMaxReach = 4000;  // columns from the sensor: 9 GB of tiles
+  if (config.scan.max_range / smallest > kMaxReach) {
+    throw ConfigError("scan.max_range = " + text(config.scan.max_range) + " must be at most " +
+                      text(kMaxReach) + " cells of " + text(smallest) +
+                      " m (matrix.res_g, matrix.room_res_g; 0: none for rooms)");
+  }
+  constexpr double kSmallestVoxel = 0.001;  // [m]: keys of smaller ones would overflow
+  if (config.online.map_voxel > 0.0 && config.online.map_voxel < kSmallestVoxel) {
+    throw ConfigError("online.map_voxel = " + text(config.online.map_voxel) +
+                      " must be 0 or at least " + text(kSmallestVoxel));
+  }
   if (config.matrix.bits_below >= config.matrix.n_bit) {
     throw ConfigError("matrix.bits_below = " + text(config.matrix.bits_below) +
                       " must be less than matrix.n_bit = " + text(config.matrix.n_bit));

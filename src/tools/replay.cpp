@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
       ->type_name("key=value");
   app.add_option("--voxel", options.voxel_m,
                  "keep one point per cube of this side [m]; 0: all points as they came")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(CLI::IsMember({0.0}) | CLI::Range(0.001, 100.0));
   std::string users = "Parameters for --set and YAML files (default, range):\n";
   std::string experts = "For experts:\n";
   for (const ParameterInfo& p : listParameters(Config())) {

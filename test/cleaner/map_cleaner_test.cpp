@@ -466,6 +466,7 @@ TEST(MapCleanerInput, ABadHeightOfOneScanHarmsNoOther) {
     with_jump.push_back(translated({scans[0]}, {0.0, 0.0, jump})[0]);
     Config config = paperConfig();
     config.scan.max_range = 1000.0;
+    config.matrix.room_res_g = 0.0;
     const Classes classes = cleanedClasses(with_jump, config);
     EXPECT_EQ(classes.back().size(), scans[0].cloud.size());
     EXPECT_EQ(countOf(classes, PointClass::kDropped), 3 * static_cast<int>(with_jump.size()));

@@ -242,6 +242,20 @@ TEST(Config, ContradictionsAreRefused) {
   EXPECT_NO_THROW(checkConfig(Config()));
 }
 
+TEST(Config, LegalValuesThatTogetherNeedTensOfGigabytesAreRefusedWithTheirProduct) {
+  Config config;
+  config.scan.max_range = 1000.0;
+  EXPECT_TRUE(contains(errorOf([&] { checkConfig(config); }), "scan.max_range = 1000"));
+  config.matrix.room_res_g = 0.0;
+  EXPECT_NO_THROW(checkConfig(config));
+  config.matrix.res_g = 0.05;
+  config.matrix.roi_size = 90.0;
+  EXPECT_TRUE(contains(errorOf([&] { checkConfig(config); }), "4000 cells of 0.05 m"));
+  Config voxel;
+  voxel.online.map_voxel = 1e-30;
+  EXPECT_TRUE(contains(errorOf([&] { checkConfig(voxel); }), "online.map_voxel"));
+}
+
 TEST(Config, ValuesSetInCodeAreCheckedToo) {
   Config bits, cell, nan;
   bits.matrix.n_bit = 65;
