@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The services of BeautyMapRos.
 #include "beautymap/online/output_folder.h"
+#include "beautymap/online/save_points.h"
 #include "beautymap/ros/beautymap_ros.h"
 
 namespace beautymap {

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "beautymap/online/save_points.h"
+
 namespace beautymap {
 namespace {
 

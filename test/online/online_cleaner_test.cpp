@@ -14,6 +14,7 @@
 
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/pcd_stream.h"
+#include "beautymap/online/save_points.h"
 #include "beautymap/simulation/simulated_source.h"
 #include "io/io_test_helpers.h"
 

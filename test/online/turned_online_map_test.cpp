@@ -11,6 +11,7 @@
 #include "beautymap/io/pcd_stream.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/online/online_cleaner.h"
+#include "beautymap/online/save_points.h"
 #include "beautymap/simulation/simulated_source.h"
 #include "io/io_test_helpers.h"
 
