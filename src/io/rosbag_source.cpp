@@ -13,15 +13,13 @@
 #include <thread>
 
 #include "beautymap/io/cloud_fields.h"
+#include "rosbag_topics.h"
 #include "scan_files.h"
 #include "stamps.h"
 #include "text.h"
 
 namespace beautymap {
 namespace {
-
-const char* const kCloudType = "sensor_msgs/PointCloud2";
-const char* const kOdometryType = "nav_msgs/Odometry";
 
 using Topic = RosbagFiles::Topic;
 
@@ -56,79 +54,6 @@ Window widened(Window window) {
 
 bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// Topics are named with and without a leading slash.
-bool sameTopic(const std::string& a, const std::string& b) {
-  return stripSlash(a) == stripSlash(b);
-}
-
-RosbagFiles::Query messagesOf(const Topic& topic) {
-  return [topic](const rosbag::ConnectionInfo& connection) {
-    return connection.topic == topic.name && connection.datatype == topic.type;
-  };
-}
-
-/// The header.frame_id of a topic's first readable message.
-template <typename Message>
-std::string firstFrame(const RosbagFiles& files, const Topic& topic) {
-  const auto view = files.view(messagesOf(topic));
-  for (const auto& instance : *view) {
-    try {
-      const auto message = instance.instantiate<Message>();
-      if (message != nullptr) return stripSlash(message->header.frame_id);
-    } catch (const std::exception&) {
-      continue;
-    }
-  }
-  return "";
-}
-
-/// One line a topic of this type: name, type, frame, count.
-template <typename Message>
-std::string candidates(const RosbagFiles& files, const std::string& type) {
-  std::string lines;
-  for (const Topic& topic : files.topics()) {
-    if (topic.type != type) continue;
-    lines += "\n  " + topic.name + " (" + type + ", frame '" + firstFrame<Message>(files, topic) +
-             "', " + std::to_string(topic.messages) + " messages)";
-  }
-  return lines;
-}
-
-std::string allTopics(const RosbagFiles& files) {
-  std::vector<std::string> topics;
-  for (const Topic& topic : files.topics()) topics.push_back(topic.name + " (" + topic.type + ")");
-  return join(topics);
-}
-
-Topic chooseCloudTopic(const RosbagFiles& files, const std::string& wanted) {
-  std::vector<Topic> found;
-  for (const Topic& topic : files.topics()) {
-    if (topic.type == kCloudType && (wanted.empty() || sameTopic(topic.name, wanted))) {
-      found.push_back(topic);
-    }
-  }
-  if (found.size() == 1) return found.front();
-  const std::string list = candidates<sensor_msgs::PointCloud2>(files, kCloudType);
-  if (list.empty()) {
-    throw InputError(
-        files.paths().front() +
-        ": there are no sensor_msgs/PointCloud2 messages; topics: " + allTopics(files));
-  }
-  if (wanted.empty()) {
-    throw InputError("there are several topics with clouds: name one with --cloud-topic" + list);
-  }
-  throw InputError("there are no clouds on " + wanted + " (--cloud-topic); candidates:" + list);
-}
-
-Topic chooseOdometryTopic(const RosbagFiles& files, const std::string& wanted) {
-  for (const Topic& topic : files.topics()) {
-    if (topic.type == kOdometryType && sameTopic(topic.name, wanted)) return topic;
-  }
-  const std::string list = candidates<nav_msgs::Odometry>(files, kOdometryType);
-  throw InputError("there is no nav_msgs/Odometry on " + wanted + " (--odom-topic); " +
-                   (list.empty() ? "topics: " + allTopics(files) : "candidates:" + list));
 }
 
 /// Every readable message of a window of time, in the order of record times.
@@ -222,7 +147,7 @@ RosbagSource::RosbagSource(const std::vector<std::string>& paths, const SourceOp
     : files_(paths),
       topic_(chooseCloudTopic(files_, options.cloud_topic)),
       stride_(static_cast<std::size_t>(std::max(1, options.stride))),
-      cloud_frame_(firstFrame<sensor_msgs::PointCloud2>(files_, topic_)),
+      cloud_frame_(frameOfClouds(files_, topic_)),
       poses_(loadPoses(options)) {
   moving_labels_ = options.moving_labels;
   const Window window = chooseWindow(files_, options);
@@ -245,7 +170,7 @@ std::unique_ptr<ScanPoses> RosbagSource::loadPoses(const SourceOptions& options)
     return posesFromOdometry(std::move(odometry), std::move(tf), options, cloud_frame_);
   }
   if (tf.empty()) {
-    const std::string list = candidates<nav_msgs::Odometry>(files_, kOdometryType);
+    const std::string list = odometryCandidates(files_);
     throw InputError(
         files_.paths().front() + ": there are no usable transforms on /tf or /tf_static" +
         (tf.unusable() > 0 ? " (" + std::to_string(tf.unusable()) +

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <filesystem>
 #include <future>
-#include <thread>
 
 #include "beautymap/io/cloud_fields.h"
 #include "beautymap/io/scan_conversion.h"
 #include "beautymap/matrix/cell_size.h"
+#include "online_cleaner_locks.h"
 
 namespace beautymap {
 namespace {
@@ -25,36 +25,6 @@ Config withinRadius(Config config) {
 }
 
 }  // namespace
-
-/// For the thread that adds scans, and for what is quick: goes before those who read many tiles. A
-/// mutex alone would give these the lock again and again.
-class OnlineCleaner::FirstLock {
- public:
-  explicit FirstLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
-    ++cleaner.first_waiting_;
-    lock_.lock();
-    --cleaner.first_waiting_;
-  }
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
-
-class OnlineCleaner::ReaderLock {
- public:
-  explicit ReaderLock(const OnlineCleaner& cleaner) : lock_(cleaner.mutex_, std::defer_lock) {
-    while (cleaner.first_waiting_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
-    lock_.lock();
-  }
-  /// What the last scan saw free is judged with the next scan, unless somebody asks before.
-  void settle(const OnlineCleaner& cleaner) const {
-    if (!cleaner.settled_) cleaner.map_.settle();
-    cleaner.settled_ = true;
-  }
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
 
 OnlineCleaner::OnlineCleaner(const Config& config, std::string folder)
     : config_(withinRadius(config)),
@@ -282,60 +252,6 @@ std::optional<UpDirection> OnlineCleaner::up() const {
   const FirstLock lock(*this);
   if (!started_) return {};
   return up_;
-}
-
-void OnlineCleaner::saveSession(const std::string& path, const std::string& map_frame) const {
-  const std::vector<ColumnIndex> all = tiles();
-  const TileFileWriter::Header head = [&] {
-    const ReaderLock lock(*this);
-    return header(map_frame);
-  }();
-  TileFileWriter writer(path, head, config());
-  for (const ColumnIndex index : all) {
-    const ReaderLock lock(*this);
-    if (on_disk_.count({index.x, index.y}) != 0) {
-      Tile tile = map_.map().newTile();
-      TilePoints points;
-      fetch(index, tile, points);
-      writer.append(index, tile, points);
-      continue;
-    }
-    const Tile* tile = map_.map().findTile(index);
-    const TilePoints* points = points_.findTile(index);
-    if (tile != nullptr) writer.append(index, *tile, points != nullptr ? *points : TilePoints());
-  }
-  writer.close();
-}
-
-std::string OnlineCleaner::loadSession(const std::string& path) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  TileFileReader reader(path, config_);
-  const UpDirection told = UpFinder().find(config_);
-  if (config_.map.up != "auto" && told.up != reader.header().up) {
-    throw InputError("'" + path + "' was made with another direction up than map.up = " +
-                     config_.map.up + ": leave that at auto, or begin a new map");
-  }
-  up_.up = reader.header().up;
-  up_.basis = UpDirection::Basis::kContinued;
-  setCellSize(reader.cellSize());
-  map_.setZOrigin(reader.header().z_origin);
-  points_.setLayout(reader.header().layout);
-  for (const pcl::PCLPointField& field : reader.header().layout.fields) {
-    if (field.name == "x") float64_ = field.datatype == pcl::PCLPointField::FLOAT64;
-  }
-  started_ = true;
-  while (true) {
-    Tile tile = map_.map().newTile();
-    TilePoints points;
-    ColumnIndex index;
-    if (!reader.next(index, tile, points)) break;
-    tile.unsettled = true;
-    map_.map().tileAt(index) = std::move(tile);
-    points_.countAdded(points.size());
-    points_.tileAt(index) = std::move(points);
-  }
-  map_.settle();
-  return reader.header().map_frame;
 }
 
 OnlineCleaner::Size OnlineCleaner::size() const {
